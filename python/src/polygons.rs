@@ -27,8 +27,10 @@ pub fn _triangulated<'py>(
                 found.shape()
             )));
         }
-        // A negative number is not valid. Converted to an unsigned number, it is large and is refused.
-        Ok(found.as_slice()?.iter().map(|number| *number as u64).collect())
+        let unsigned = |number: &i64| {
+            u64::try_from(*number).map_err(|_| value(format!("{place}: {name} has the negative number {number}")))
+        };
+        found.as_slice()?.iter().map(unsigned).collect()
     };
     let (counts, corners) = (numbers(counts, "counts")?, numbers(corners, "corners")?);
     let found = py.detach(|| triangulate(positions, &counts, &corners));

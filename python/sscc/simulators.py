@@ -226,7 +226,7 @@ def _matrix(given: ArrayLike | str | PathLike[str], name: str, *, has_size: bool
     matrix = np.array(rows)
     if size is None:
         return matrix
-    if len(size) != 2 or size[0] != len(rows) or not 1 <= size[1] <= matrix.shape[1]:
+    if len(size) != 2 or size[0] != len(rows) or size[1] not in range(1, matrix.shape[1] + 1):
         raise ValueError(f"{place}: line 1: '{len(rows)} {matrix.shape[1]}' was expected, the size of the matrix")
     # SOFA ignores further columns, which its own files may have.
     return matrix[:, : int(size[1])]

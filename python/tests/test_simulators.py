@@ -273,6 +273,7 @@ FILES = [
     ("2 2\n1 2\n3\n", "line 3 has 1 numbers: 2 were expected"),
     ("3 2\n1 2\n3 4\n", "line 1: '2 2' was expected, the size of the matrix"),
     ("1 3\n1 2\n", "line 1: '1 2' was expected, the size of the matrix"),
+    ("1 1.5\n1 2\n", "line 1: '1 2' was expected, the size of the matrix"),
     ("1 2 3\n1 2 3\n", "line 1: '1 3' was expected, the size of the matrix"),
     ("1 2\n1_0 2\n", "line 2: numbers were expected"),
     ("\0\xff", "line 1: numbers were expected"),

@@ -70,6 +70,7 @@ def test_bad_files_are_named(tmp_path: Path) -> None:
         (CLOTH.replace("[4, 3]", "[4, 4]"), "more corners than are given"),
         (CLOTH.replace("[4, 3]", "[5, 2]"), "needs at least 3 corners"),
         (CLOTH.replace("4, 5, 6]\n", "4, 5, 7]\n"), "names vertex 7"),
+        (CLOTH.replace("4, 5, 6]\n", "4, 5, -1]\n"), "has the negative number -1"),
         (CLOTH.replace("(2,1,-0.5), (1,1,0.5)", "(2,1,-0.5)"), "the mesh has 7 points at first, 6 at time code 5"),
         (CLOTH.replace("int[] faceVertexCounts = [4, 3]", "int[] faceVertexCounts.timeSamples = {0: [4, 3], 1: [3, 4]}"), "change over time"),
     ]:

@@ -4,11 +4,18 @@ use std::fs::{self, File};
 use std::io::{self, ErrorKind, Read};
 use std::path::{Path, PathBuf};
 
+use crate::error::cut;
 use crate::part_file::PartFile;
 use crate::{FormatError, IoError};
 
 /// Beginning of the text that Git LFS stores in place of a file.
 const LFS_POINTER: &[u8] = b"version https://git-lfs.github.com/spec/";
+
+/// Maximum number of links from a path to its file, as on Linux.
+const MAX_LINKS: usize = 40;
+
+/// Maximum number of characters of a path in the cause of an error.
+const MAX_SHOWN: usize = 200;
 
 /// Reads a whole file.
 ///
@@ -64,11 +71,12 @@ pub(crate) fn read_error(path: &Path, cause: io::Error) -> IoError {
 }
 
 /// Writes a whole file atomically: to a temporary file in the same folder, which is then renamed. An old file stays
-/// unchanged until the new one is complete.
+/// unchanged until the new one is complete. A link is followed: it stays, and the file to which it leads is replaced. On Unix the
+/// new file has the permissions of the old one.
 ///
 /// # Errors
-/// When the folder is not writable, the target is not a regular file, or the system reports an error. The target is then
-/// unchanged, and no temporary file remains.
+/// When the folder is not writable, the target is not a regular file or is read-only, a link leads to a folder that does not exist,
+/// or the system reports an error. The target is then unchanged, and no temporary file remains.
 pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), IoError> {
     let mut file = WholeFile::create(path)?;
     file.write(bytes)?;
@@ -77,7 +85,10 @@ pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), IoError> {
 
 /// A file that is written in parts, and replaces its target when it is complete: see [`write_whole`].
 pub(crate) struct WholeFile {
+    /// The path in messages.
     path: PathBuf,
+    /// The file of the path, after all links.
+    target: PathBuf,
     /// Dropping it before the rename removes it.
     part: PartFile,
 }
@@ -89,8 +100,15 @@ impl WholeFile {
     /// As [`write_whole`].
     pub(crate) fn create(path: &Path) -> Result<Self, IoError> {
         check_target(path)?;
-        let part = PartFile::create_in(folder(path)).map_err(|cause| not_written(path, cause))?;
-        Ok(Self { path: path.to_owned(), part })
+        let target = linked_file(path)?;
+        let part = PartFile::create_in(folder(&target)).map_err(|cause| not_written(path, cause))?;
+        // Before the first byte is written, so that nobody can read it who cannot read the old file.
+        if cfg!(unix)
+            && let Ok(old) = fs::metadata(&target)
+        {
+            part.set_permissions(old.permissions());
+        }
+        Ok(Self { path: path.to_owned(), target, part })
     }
 
     /// Appends bytes.
@@ -100,20 +118,49 @@ impl WholeFile {
 
     /// Replaces the target.
     pub(crate) fn finish(self) -> Result<(), IoError> {
-        let Self { path, part } = self;
-        part.rename(&path).map_err(|cause| not_written(&path, cause))?;
-        sync_folder(&path);
+        let Self { path, target, part } = self;
+        part.rename(&target).map_err(|cause| not_written(&path, cause))?;
+        sync_folder(&target);
         Ok(())
     }
 }
 
-/// Returns an error if a file cannot be replaced: a rename over /dev/null would replace the device.
+/// Returns an error if a file cannot be replaced. A rename over /dev/null would replace the device, and one over a read-only file
+/// would succeed.
 pub(crate) fn check_target(path: &Path) -> Result<(), IoError> {
     match fs::metadata(path) {
+        Ok(metadata) if metadata.is_file() && metadata.permissions().readonly() => {
+            let cause = "it is read-only: make it writable, or choose another name";
+            Err(not_written(path, io::Error::new(ErrorKind::PermissionDenied, cause)))
+        }
         Ok(metadata) => check_regular(path, &metadata),
         Err(error) if error.kind() == ErrorKind::NotFound => Ok(()),
         Err(error) => Err(not_written(path, error)),
     }
+}
+
+/// Returns the file to which a path leads after all links, which need not exist; the path itself if it is no link.
+///
+/// # Errors
+/// When a link cannot be read, or leads to a folder that does not exist or to itself.
+fn linked_file(path: &Path) -> Result<PathBuf, IoError> {
+    let mut file = path.to_owned();
+    for links in 0..MAX_LINKS {
+        if !fs::symlink_metadata(&file).is_ok_and(|found| found.is_symlink()) {
+            if links > 0 && !folder(&file).is_dir() {
+                let shown = cut(&file.to_string_lossy(), MAX_SHOWN);
+                let cause = format!(
+                    "it is a link to {shown}, whose folder does not exist: make that folder, or remove the link"
+                );
+                return Err(not_written(path, io::Error::new(ErrorKind::NotFound, cause)));
+            }
+            return Ok(file);
+        }
+        let to = fs::read_link(&file).map_err(|cause| not_written(path, cause))?;
+        file = folder(&file).join(to);
+    }
+    let cause = "it is a link that leads to itself: remove it, or choose another name";
+    Err(not_written(path, io::Error::other(cause)))
 }
 
 /// Makes the rename of a file durable. Some systems cannot open directories.
@@ -214,6 +261,71 @@ mod tests {
         assert!(message(&empty).ends_with("empty.obj: the file is empty"));
         #[cfg(unix)]
         assert!(message(Path::new("/dev/zero")).ends_with("is a device or pipe, a file was expected"));
+    }
+
+    #[test]
+    #[cfg(unix)]
+    fn links_stay_and_their_files_are_replaced() {
+        use std::os::unix::fs::symlink;
+        let directory = tempfile::tempdir().unwrap();
+        let at = |name: &str| directory.path().join(name);
+        fs::create_dir(at("big")).unwrap();
+        fs::write(at("big/x.npy"), b"old").unwrap();
+        // A link to a file, a link to that link through a relative path, and a link to a file that does not exist yet.
+        symlink(at("big/x.npy"), at("x.npy")).unwrap();
+        symlink("../x.npy", at("big/again.npy")).unwrap();
+        symlink("big/new.npy", at("new.npy")).unwrap();
+        for (link, file, bytes) in [
+            ("x.npy", "big/x.npy", b"first"),
+            ("big/again.npy", "big/x.npy", b"later"),
+            ("new.npy", "big/new.npy", b"begun"),
+        ] {
+            write_whole(&at(link), bytes).unwrap();
+            assert!(fs::symlink_metadata(at(link)).unwrap().is_symlink(), "{link}");
+            assert!(fs::symlink_metadata(at(file)).unwrap().is_file(), "{file}");
+            assert_eq!(fs::read(at(file)).unwrap(), bytes, "{link}");
+        }
+        symlink("none/x.npy", at("lost.npy")).unwrap();
+        symlink("circle.npy", at("circle.npy")).unwrap();
+        let message = |name: &str| write_whole(&at(name), b"x").unwrap_err().to_string();
+        let lost = message("lost.npy");
+        let end = "none/x.npy, whose folder does not exist: make that folder, or remove the link";
+        assert!(
+            lost.contains("lost.npy: cannot be written: it is a link to ") && lost.ends_with(end),
+            "{lost}"
+        );
+        assert!(message("circle.npy").contains("circle.npy: cannot be written: "), "a circle");
+        let mut left = [names(directory.path()), names(&at("big"))].concat();
+        left.sort();
+        let expected = ["again.npy", "big", "circle.npy", "lost.npy", "new.npy", "new.npy", "x.npy", "x.npy"];
+        assert_eq!(left, expected);
+    }
+
+    #[test]
+    #[cfg(unix)]
+    fn read_only_files_are_kept_and_permissions_stay() {
+        use std::os::unix::fs::PermissionsExt;
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join("x.npy");
+        let mode = || fs::metadata(&path).unwrap().permissions().mode() & 0o777;
+        let set_mode = |mode| fs::set_permissions(&path, fs::Permissions::from_mode(mode)).unwrap();
+        fs::write(&path, b"old").unwrap();
+        set_mode(0o444);
+        let refused = write_whole(&path, b"new").unwrap_err().to_string();
+        let end = "x.npy: cannot be written: it is read-only: make it writable, or choose another name";
+        assert!(refused.ends_with(end), "{refused}");
+        assert_eq!((fs::read(&path).unwrap(), mode()), (b"old".to_vec(), 0o444));
+        assert_eq!(names(directory.path()), ["x.npy"]);
+        for kept in [0o600, 0o664, 0o755] {
+            set_mode(kept);
+            write_whole(&path, b"new").unwrap();
+            assert_eq!((fs::read(&path).unwrap(), mode()), (b"new".to_vec(), kept));
+        }
+        // A new file has the permissions that any new file has here.
+        let [plain, other] = ["plain", "other"].map(|name| directory.path().join(name));
+        fs::write(&plain, b"x").unwrap();
+        write_whole(&other, b"x").unwrap();
+        assert_eq!(fs::metadata(plain).unwrap().permissions(), fs::metadata(other).unwrap().permissions());
     }
 
     #[test]

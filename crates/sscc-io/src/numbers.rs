@@ -36,7 +36,7 @@ pub fn read_rows(path: &Path) -> Result<Rows, IoError> {
     parse_rows(&read_whole(path)?).map_err(|error| error.of(path))
 }
 
-/// Reads a vector: a `.npy` array of shape (r), or a text file (any other ending) with numbers between white space,
+/// Reads a vector: a `.npy` array of shape (r), or a text file (any other ending) with numbers between white space or commas,
 /// where `#` begins a comment.
 ///
 /// # Errors
@@ -64,8 +64,8 @@ pub fn read_matrix(path: &Path) -> Result<Rows, IoError> {
 fn parse_rows(bytes: &[u8]) -> Result<Rows, FormatError> {
     let array = npy::parse(bytes)?;
     match *array.shape() {
-        [rows, columns] if rows > 0 && columns > 0 => Ok(Rows { rows, columns, data: array.to_c_order() }),
-        [columns] if columns > 0 => Ok(Rows { rows: 1, columns, data: array.to_c_order() }),
+        [rows, columns] if rows > 0 && columns > 0 => Ok(Rows { rows, columns, data: array.into_c_order() }),
+        [columns] if columns > 0 => Ok(Rows { rows: 1, columns, data: array.into_c_order() }),
         ref other => Err(FormatError::whole(format!(
             "shape {other:?}: (T, r) or (r) was expected, without empty axes"
         ))),
@@ -75,18 +75,28 @@ fn parse_rows(bytes: &[u8]) -> Result<Rows, FormatError> {
 fn parse_vector(bytes: &[u8]) -> Result<Vec<f64>, FormatError> {
     let array = npy::parse(bytes)?;
     match *array.shape() {
-        [length] if length > 0 => Ok(array.to_c_order()),
-        ref other => {
-            Err(FormatError::whole(format!("shape {other:?}: (r) was expected, without an empty axis")))
-        }
+        [length] if length > 0 => Ok(array.into_c_order()),
+        ref other => Err(FormatError::whole(format!(
+            "shape {other:?}: (r) was expected, without an empty axis; save one row, or q.reshape(-1)"
+        ))),
     }
 }
 
 fn parse_text(bytes: &[u8]) -> Result<Vec<f64>, FormatError> {
+    if bytes.starts_with(b"PK\x03\x04") {
+        return Err(FormatError::whole("an archive: save one array with numpy.save"));
+    }
     let mut values = Vec::new();
     for (line, text) in Lines::new(bytes)? {
-        for word in decoded(without_comment(text), line)?.split_ascii_whitespace() {
-            values.push(number(word, line)?);
+        let text = decoded(without_comment(text), line)?.trim_ascii();
+        // A comma may end a line that goes on in the next one.
+        for part in text.strip_suffix(',').unwrap_or(text).split(',') {
+            if part.trim_ascii().is_empty() && !text.is_empty() {
+                return Err(FormatError::line(line, "a number is missing beside a comma"));
+            }
+            for word in part.split_ascii_whitespace() {
+                values.push(number(word, line)?);
+            }
         }
     }
     if values.is_empty() { Err(FormatError::whole("the file has no numbers")) } else { Ok(values) }
@@ -105,7 +115,10 @@ mod tests {
         assert_eq!((rows.rows, rows.columns), (2, 3));
         assert_eq!(rows.iter().collect::<Vec<_>>(), [[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]]);
         assert!(
-            read_vector(&path).unwrap_err().to_string().ends_with("(r) was expected, without an empty axis")
+            read_vector(&path)
+                .unwrap_err()
+                .to_string()
+                .contains("shape [2, 3]: (r) was expected, without an empty axis; save one row")
         );
         npy::write_npy(&path, &[3], &[1.0, 2.0, 3.0]).unwrap();
         assert_eq!(read_rows(&path).unwrap(), Rows { rows: 1, columns: 3, data: vec![1.0, 2.0, 3.0] });
@@ -127,6 +140,12 @@ mod tests {
     #[test]
     fn vectors_are_read_from_text_with_comments() {
         assert_eq!(parse_text(b"1 2e-3 # weights\r\n\n-4\n").unwrap(), [1.0, 2e-3, -4.0]);
+        assert_eq!(parse_text(b"0.1,0.2 , 3\t4,\n-5\n").unwrap(), [0.1, 0.2, 3.0, 4.0, -5.0]);
+        for wrong in ["1,,2", ",1", "1, ,2", ",", "1,,"] {
+            let message = parse_text(format!("7\n{wrong}\n").as_bytes()).unwrap_err().to_string();
+            assert_eq!(message, "line 2: a number is missing beside a comma");
+        }
+        assert!(parse_text(b"PK\x03\x04\n").unwrap_err().to_string().contains("numpy.save"));
         assert_eq!(parse_text(b"1\nx").unwrap_err().to_string(), "line 2: 'x' is not a number");
         assert_eq!(parse_text(b"1\nnan").unwrap_err().to_string(), "line 2: 'nan' is not a finite number");
         assert_eq!(parse_text(b" # \n").unwrap_err().to_string(), "the file has no numbers");

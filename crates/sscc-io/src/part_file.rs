@@ -1,6 +1,6 @@
 //! Temporary files beside a target, which replace it by renaming.
 
-use std::fs::{self, File};
+use std::fs::{self, File, Permissions};
 use std::io::{self, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 use std::process;
@@ -24,6 +24,13 @@ impl PartFile {
     /// Appends bytes.
     pub(crate) fn write(&mut self, bytes: &[u8]) -> io::Result<()> {
         self.file.as_mut().map_or(Ok(()), |file| file.write_all(bytes))
+    }
+
+    /// Sets the permissions of the file. Some file systems have none: there the file keeps those with which it was created.
+    pub(crate) fn set_permissions(&self, permissions: Permissions) {
+        if let Some(file) = &self.file {
+            let _ = file.set_permissions(permissions);
+        }
     }
 
     /// Flushes the file to the disk and renames it to `target`, which is replaced if it exists.

@@ -3,30 +3,20 @@
 use crate::FormatError;
 use crate::error::quoted;
 
-/// Iterator over the lines of a text file, each with its number from 1. Lines end with LF or CR LF, in files without LF
-/// with CR; a byte order mark is skipped. Lines are bytes, because comments may have other encodings.
+/// Iterator over the lines of a text file, each with its number from 1. A line ends with LF, CR LF, or a CR that no LF
+/// follows; a file may mix them. Byte order marks at the beginning of a line are skipped: files that are joined have several.
+/// Lines are bytes, because comments may have other encodings.
 pub(crate) struct Lines<'a> {
     rest: &'a [u8],
     number: usize,
-    end: u8,
-}
-
-/// Returns the last byte of a line end of this text: LF, or CR in files without LF.
-pub(crate) fn line_end(bytes: &[u8]) -> u8 {
-    if !bytes.contains(&b'\n') && bytes.contains(&b'\r') { b'\r' } else { b'\n' }
 }
 
 impl<'a> Lines<'a> {
     pub fn new(bytes: &'a [u8]) -> Result<Self, FormatError> {
-        Self::with_end(bytes, line_end(bytes))
-    }
-
-    /// As [`Lines::new`], for lines that end with this byte.
-    pub fn with_end(bytes: &'a [u8], end: u8) -> Result<Self, FormatError> {
         if bytes.starts_with(b"\xff\xfe") || bytes.starts_with(b"\xfe\xff") {
             return Err(FormatError::whole("the file is UTF-16 text: save it as UTF-8"));
         }
-        Ok(Self { rest: bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes), number: 0, end })
+        Ok(Self { rest: bytes, number: 0 })
     }
 }
 
@@ -37,12 +27,34 @@ impl<'a> Iterator for Lines<'a> {
         if self.rest.is_empty() {
             return None;
         }
-        let end = self.rest.iter().position(|b| *b == self.end).unwrap_or(self.rest.len());
-        let line = &self.rest[..end];
-        self.rest = self.rest.get(end + 1..).unwrap_or_default();
+        let end = self.rest.iter().position(|b| is_line_end(*b)).unwrap_or(self.rest.len());
+        let (line, rest) = self.rest.split_at(end);
+        self.rest = rest.strip_prefix(b"\r\n").or_else(|| rest.get(1..)).unwrap_or_default();
         self.number += 1;
-        Some((self.number, line.strip_suffix(b"\r").unwrap_or(line)))
+        Some((self.number, without_marks(line)))
     }
+}
+
+/// Whether a byte is LF or CR.
+pub(crate) fn is_line_end(byte: u8) -> bool {
+    matches!(byte, b'\n' | b'\r')
+}
+
+/// Whether a line ends with the byte at this place: LF, or CR that no LF follows.
+pub(crate) fn ends_line(bytes: &[u8], at: usize) -> bool {
+    match bytes.get(at) {
+        Some(b'\n') => true,
+        Some(b'\r') => bytes.get(at + 1) != Some(&b'\n'),
+        _ => false,
+    }
+}
+
+/// Returns a line without the byte order marks at its beginning.
+fn without_marks(mut line: &[u8]) -> &[u8] {
+    while let Some(rest) = line.strip_prefix(b"\xef\xbb\xbf") {
+        line = rest;
+    }
+    line
 }
 
 /// Returns the line up to the first `#`.
@@ -79,16 +91,41 @@ pub(crate) fn count(word: &str, line: usize) -> Result<usize, FormatError> {
 mod tests {
     use super::*;
 
+    fn lines(bytes: &[u8]) -> Vec<(usize, &[u8])> {
+        Lines::new(bytes).unwrap().collect()
+    }
+
     #[test]
     fn lines_are_numbered_and_have_any_ending() {
-        let lines: Vec<_> = Lines::new(b"\xef\xbb\xbfa\r\nb\n\nc").unwrap().collect();
-        assert_eq!(lines, [(1, &b"a"[..]), (2, b"b"), (3, b""), (4, b"c")]);
+        let all = [(1, &b"a"[..]), (2, b"b"), (3, b""), (4, b"c")];
+        for bytes in [
+            &b"\xef\xbb\xbfa\r\nb\n\nc"[..],
+            b"\xef\xbb\xbfa\rb\r\rc",
+            b"a\rb\n\nc\r",
+            b"a\nb\r\r\nc\n",
+            b"a\r\nb\n\rc\r\n",
+        ] {
+            assert_eq!(lines(bytes), all, "{bytes:?}");
+        }
+        assert!(lines(b"").is_empty());
+        assert_eq!(lines(b"\r"), [(1, &b""[..])]);
         assert!(Lines::new(b"\xff\xfev\0").is_err());
-        let lines: Vec<_> = Lines::new(b"\xef\xbb\xbfa\rb\r\rc").unwrap().collect();
-        assert_eq!(lines, [(1, &b"a"[..]), (2, b"b"), (3, b""), (4, b"c")]);
-        // A single CR within a file of other line ends is no line end.
-        let lines: Vec<_> = Lines::new(b"a\rb\nc\r").unwrap().collect();
-        assert_eq!(lines, [(1, &b"a\rb"[..]), (2, b"c")]);
+    }
+
+    #[test]
+    fn the_ends_of_lines_are_those_of_the_iterator() {
+        for bytes in [&b"a\r\nb\n\nc"[..], b"a\rb\r\r\nc", b"\r\n\r\n", b"\n\r", b"a"] {
+            let ends = (0..bytes.len()).filter(|at| ends_line(bytes, *at)).count();
+            let is_open = !bytes.ends_with(b"\n") && !bytes.ends_with(b"\r");
+            assert_eq!(lines(bytes).len(), ends + usize::from(is_open), "{bytes:?}");
+        }
+    }
+
+    /// Files that are joined keep their marks.
+    #[test]
+    fn every_line_may_begin_with_byte_order_marks() {
+        let joined = b"\xef\xbb\xbfa\n\xef\xbb\xbfb\r\xef\xbb\xbf\xef\xbb\xbfc\nd\xef\xbb\xbf";
+        assert_eq!(lines(joined), [(1, &b"a"[..]), (2, b"b"), (3, b"c"), (4, b"d\xef\xbb\xbf")]);
     }
 
     #[test]

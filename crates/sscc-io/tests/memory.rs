@@ -114,3 +114,46 @@ fn bombs_are_not_unpacked() {
     false_size[at..at + 4].copy_from_slice(&1000_u32.to_le_bytes());
     assert!(peak(|| assert!(npz::parse_model(&false_size).is_err())) < 300_000);
 }
+
+/// Returns an array of NumPy of this type and shape, whose bytes are 0.
+fn zeros(descr: &str, shape: [usize; 2], size: usize) -> Vec<u8> {
+    let [rows, columns] = shape;
+    let header = format!("{{'descr': '{descr}', 'fortran_order': False, 'shape': ({rows}, {columns}), }}\n");
+    let start = [b"\x93NUMPY\x01\x00", &(header.len() as u16).to_le_bytes()[..], header.as_bytes()].concat();
+    [start, vec![0; rows * columns * size]].concat()
+}
+
+/// Entries of one byte become numbers of eight. An archive whose numbers would take far more than its size is rejected before
+/// they are decoded.
+#[test]
+fn narrow_integers_are_counted_as_numbers() {
+    use std::io::Write;
+    let mut writer = zip::ZipWriter::new(std::io::Cursor::new(Vec::new()));
+    let options =
+        zip::write::SimpleFileOptions::default().compression_method(zip::CompressionMethod::Deflated);
+    let arrays = [
+        ("mean", zeros("|i1", [10_000_000, 3], 1)),
+        ("faces", zeros("<i8", [1, 3], 8)),
+        ("components", zeros("<f8", [1, 3], 8)),
+    ];
+    for (name, array) in arrays {
+        writer.start_file(format!("{name}.npy"), options).unwrap();
+        writer.write_all(&array).unwrap();
+    }
+    let archive = writer.finish().unwrap().into_inner();
+    assert!(archive.len() < 100_000, "{}", archive.len());
+    let mut message = String::new();
+    // The entry itself may be unpacked: 30 MB, while its vector grows. Its numbers would take 240 MB.
+    let peak = peak(|| message = npz::parse_model(&archive).unwrap_err().to_string());
+    assert!(peak < 150_000_000, "{peak}");
+    assert!(message.starts_with("array 'mean': its numbers would take more than "), "{message}");
+}
+
+/// An array of bytes takes its numbers, and nothing else of that size.
+#[test]
+fn narrow_integers_are_decoded_without_a_copy() {
+    let array = zeros("|u1", [1000, 1000], 1);
+    let mut last = f64::NAN;
+    let peak = peak(|| last = npy::parse(&array).unwrap().into_c_order()[999_999]);
+    assert!(last == 0.0 && peak < 8_100_000, "{peak}");
+}

@@ -1,10 +1,13 @@
-//! Names and removal of the files that a simulation writes beside its states.
+//! Names of the files that a simulation writes to its folder, their removal, and checks that files of others are not lost.
 
 use std::fs;
 use std::io::ErrorKind;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-use crate::error::{InSystem, Result};
+use serde_json::Value;
+use sscc_io::{Setting, has_file, read_whole};
+
+use crate::error::{InSystem, Result, SimError};
 
 /// Files that a simulation writes into its folder, in the order in which they are listed and their errors are reported.
 pub const OUTPUT_FILES: [&str; 7] = [
@@ -17,6 +20,18 @@ pub const OUTPUT_FILES: [&str; 7] = [
     "sound_float.wav",
 ];
 
+/// The states of a simulation.
+pub const LOG: &str = "states.log";
+
+/// The data from which a simulation continues.
+pub const CHECKPOINT: &str = "checkpoint.bin";
+
+/// Size of the hash of all bytes before it, with which a checkpoint ends (bytes).
+const SEAL: usize = 32;
+
+/// Keys of every summary. Together they are in no file of another program.
+const SUMMARY_KEYS: [&str; 4] = ["scene_steps", "body_steps", "colliding_body_steps", "self_collision_share"];
+
 /// Removes the files of an earlier simulation, so that a user cannot mistake them for files of the new one.
 pub fn remove_outputs(folder: &Path) -> Result<()> {
     OUTPUT_FILES.iter().try_for_each(|name| remove_file(&folder.join(name)))
@@ -27,5 +42,150 @@ pub fn remove_file(path: &Path) -> Result<()> {
     match fs::remove_file(path) {
         Err(error) if error.kind() != ErrorKind::NotFound => Err(error).system(path),
         _ => Ok(()),
+    }
+}
+
+/// Returns an error if a simulation in this folder would replace or remove one of these inputs, each a file, `FILE#NAME` or a
+/// folder of meshes. Links are followed.
+pub fn check_inputs(folder: &Path, inputs: &[PathBuf]) -> Result<()> {
+    for name in OUTPUT_FILES.iter().chain(&[LOG, CHECKPOINT]) {
+        let path = folder.join(name);
+        let Ok(real) = fs::canonicalize(&path) else { continue }; // there is no such file
+        if inputs.iter().any(|input| has_file(input, &real)) {
+            let cause = "is an input of the scene: choose another folder with " + Setting::Out;
+            return Err(SimError::refused(path.display(), cause));
+        }
+    }
+    Ok(())
+}
+
+/// Returns an error if the folder is not that of an earlier simulation, and has a file that a simulation would replace or
+/// remove. [`StateLog`](crate::StateLog) itself checks a log that is not empty.
+pub fn check_others(folder: &Path) -> Result<()> {
+    let log = folder.join(LOG);
+    if fs::metadata(log).is_ok_and(|log| log.len() > 0) {
+        return Ok(());
+    }
+    let exists = |path: &PathBuf| fs::symlink_metadata(path).is_ok();
+    let checkpoint = folder.join(CHECKPOINT);
+    if exists(&checkpoint) {
+        return if is_checkpoint(&checkpoint) { Ok(()) } else { Err(of_others(&checkpoint)) };
+    }
+    match OUTPUT_FILES.iter().map(|name| folder.join(name)).find(exists) {
+        Some(path) if !has_results(folder) => Err(of_others(&path)),
+        _ => Ok(()),
+    }
+}
+
+/// Returns the error for a file that no simulation wrote.
+pub fn of_others(path: &Path) -> SimError {
+    let cause = "exists and is not of a simulation: choose another folder with " + Setting::Out;
+    SimError::refused(path.display(), cause + ", or move it away")
+}
+
+/// Returns the content of a checkpoint before its seal; None if the bytes are not those of a whole checkpoint.
+pub fn unsealed(bytes: &[u8]) -> Option<&[u8]> {
+    let (content, seal) = bytes.split_at_checked(bytes.len().checked_sub(SEAL)?)?;
+    (blake3::hash(content).as_bytes() == seal).then_some(content)
+}
+
+/// Whether a file is a whole checkpoint of any simulation.
+pub fn is_checkpoint(path: &Path) -> bool {
+    read_whole(path).is_ok_and(|bytes| unsealed(&bytes).is_some())
+}
+
+/// Whether the folder has summary and costs of a simulation. They stay when a user removes its log, which is large.
+fn has_results(folder: &Path) -> bool {
+    let has_costs = folder.join("costs.npz").is_file();
+    has_costs && read_whole(&folder.join("summary.json")).is_ok_and(|json| is_summary(&json))
+}
+
+fn is_summary(json: &[u8]) -> bool {
+    serde_json::from_slice::<Value>(json)
+        .is_ok_and(|summary| SUMMARY_KEYS.iter().all(|key| summary.get(key).is_some()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Returns the files of a folder with their content.
+    fn contents(folder: &Path) -> Vec<(PathBuf, Vec<u8>)> {
+        let paths = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
+        let mut found: Vec<_> = paths.map(|path| (path.clone(), fs::read(path).unwrap())).collect();
+        found.sort();
+        found
+    }
+
+    #[test]
+    fn files_of_others_are_refused_and_stay() {
+        for name in OUTPUT_FILES.iter().chain(&[CHECKPOINT]) {
+            let folder = tempfile::tempdir().unwrap();
+            let path = folder.path().join(name);
+            fs::write(&path, b"{\"scene_steps\": 1}").unwrap();
+            let before = contents(folder.path());
+            let message = check_others(folder.path()).unwrap_err().to_string();
+            let cause = "exists and is not of a simulation: choose another folder with out, or move it away";
+            assert_eq!(message, format!("{}: {cause}", path.display()));
+            // An empty log proves nothing.
+            fs::write(folder.path().join(LOG), b"").unwrap();
+            assert!(check_others(folder.path()).is_err(), "{name}");
+            fs::remove_file(folder.path().join(LOG)).unwrap();
+            assert_eq!(contents(folder.path()), before);
+        }
+    }
+
+    #[test]
+    fn folders_of_simulations_are_accepted() {
+        let folder = tempfile::tempdir().unwrap();
+        let write = |name: &str, bytes: &[u8]| fs::write(folder.path().join(name), bytes).unwrap();
+        let accepted = || check_others(folder.path()).is_ok();
+        assert!(accepted() && check_others(&folder.path().join("none")).is_ok());
+        write("notes.txt", b"x");
+        write(LOG, b"");
+        assert!(accepted());
+        // The summary and the costs, in place of the log.
+        write("report.html", b"x");
+        let summary = SUMMARY_KEYS.map(|key| format!("\"{key}\": 0")).join(", ");
+        write("summary.json", format!("{{{summary}}}").as_bytes());
+        assert!(!accepted());
+        write("costs.npz", b"PK");
+        assert!(accepted());
+        write("summary.json", b"[1, 2]");
+        assert!(!accepted());
+        // A checkpoint with its seal.
+        let sealed = [b"content", &blake3::hash(b"content").as_bytes()[..]].concat();
+        write(CHECKPOINT, &sealed);
+        assert!(accepted());
+        write(CHECKPOINT, &sealed[1..]);
+        assert!(!accepted());
+        assert_eq!((unsealed(&sealed), unsealed(&sealed[..31])), (Some(&b"content"[..]), None));
+    }
+
+    #[test]
+    fn inputs_are_refused_wherever_they_lead() {
+        let folder = tempfile::tempdir().unwrap();
+        let at = |name: &str| folder.path().join(name);
+        fs::create_dir(at("out")).unwrap();
+        for name in ["model.glb", "out/animation.glb", "out/states.log"] {
+            fs::write(at(name), b"x").unwrap();
+        }
+        let check = |input: &str| check_inputs(&at("out"), &[at("none"), at(input)]);
+        for (input, name) in [
+            ("out/animation.glb", "animation.glb"),
+            ("out/../out/animation.glb#Body", "animation.glb"),
+            ("out/states.log", "states.log"),
+        ] {
+            let message = check(input).unwrap_err().to_string();
+            let path = at("out").join(name);
+            let expected = "is an input of the scene: choose another folder with out";
+            assert_eq!(message, format!("{}: {expected}", path.display()));
+        }
+        assert!(check("model.glb").is_ok() && check("out/sound.wav").is_ok());
+        #[cfg(unix)]
+        {
+            std::os::unix::fs::symlink(at("model.glb"), at("out/sound.wav")).unwrap();
+            assert!(check("model.glb").unwrap_err().to_string().contains("sound.wav: is an input"), "a link");
+        }
     }
 }

@@ -4,13 +4,17 @@ use std::path::{Path, PathBuf};
 
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use sscc_io::Setting;
-use sscc_tasks::{Cache, Watch, available_threads, make_folder, models_folder};
+use sscc_tasks::{Cache, Shape, Watch, available_threads, make_folder, models_folder};
 
 use crate::error::{At, Result, SimError};
+use crate::files::{check_inputs, check_others};
 use crate::run::{
     FinishedRun, PreparedScene, RunOutcome, Summary, announcement, check_log_size, run, traditional_costs,
 };
 use crate::scenes::{Scene, read_scene};
+
+/// The files of bunny and dragon in the folder of the real models.
+const REAL_MODELS: [&str; 2] = ["bunny_14964_closed.obj", "dragon_77202_closed.ply"];
 
 /// Request for a simulation.
 #[derive(Clone, Debug, Default)]
@@ -37,8 +41,9 @@ pub struct Request {
 ///
 /// # Errors
 /// When the scene or a model cannot be read or computed; when the simulation cannot begin or continue ([`run`]), for
-/// example because bodies penetrate at the start or the folder belongs to another simulation; when `watch` cancels the
-/// preparation; when no step was made.
+/// example because bodies penetrate at the start or the folder belongs to another simulation; when a file that the simulation
+/// would replace or remove is an input of the scene, or is not of a simulation; when `watch` cancels the preparation; when no step
+/// was made.
 pub fn simulate(request: &Request, watch: &dyn Watch) -> Result<FinishedRun, SimError> {
     let scene = read_scene(&request.scene)?;
     let models = models_folder(request.models.as_deref())?;
@@ -47,6 +52,8 @@ pub fn simulate(request: &Request, watch: &dyn Watch) -> Result<FinishedRun, Sim
         Some(folder) => folder.clone(),
         None => own_folder(&request.scene, &scene.name)?,
     };
+    check_inputs(&folder, &inputs(&request.scene, &scene, models.as_deref()))?;
+    check_others(&folder)?;
     make_folder(&folder)?;
     let threads = request.threads.unwrap_or_else(available_threads);
     let pool = start_threads(ThreadPoolBuilder::new(), threads)?;
@@ -85,6 +92,30 @@ fn finish(
         Err(error) => (Vec::new(), Some(error)),
     };
     Ok(FinishedRun { scene, prepared, folder, history, summary, traditional, failure, unmeasured })
+}
+
+/// Returns the files that a scene reads: its own, if it is a file, and those of its models. `models` is the folder of the real
+/// models. Files of fixed vertices are not among them, because the scene has only their numbers.
+fn inputs(path: &Path, scene: &Scene, models: Option<&Path>) -> Vec<PathBuf> {
+    let mut inputs = Vec::new();
+    if path.is_file() {
+        inputs.push(path.to_owned());
+    }
+    for model in &scene.models {
+        match &model.recipe.shape {
+            Shape::Spring { .. } => {}
+            Shape::Bunny | Shape::Dragon => {
+                inputs.extend(models.iter().flat_map(|folder| REAL_MODELS.map(|name| folder.join(name))));
+            }
+            Shape::File(file) => inputs.push(file.clone()),
+            Shape::Embedded { surface, solid } => inputs.extend([surface.clone(), solid.clone()]),
+            Shape::Model(files) => {
+                inputs.push(files.path.clone());
+                inputs.extend(files.modes.iter().chain(&files.forces).cloned());
+            }
+        }
+    }
+    inputs
 }
 
 /// Starts this number of threads.

@@ -5,7 +5,7 @@
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Barrier, LazyLock, Mutex};
 use std::thread;
@@ -286,6 +286,93 @@ fn the_description_of_each_shake_can_be_cancelled() {
     assert!(!is_cancelled);
     assert_eq!(run(20, usize::MAX), (false, checks + 19));
     assert_eq!(run(20, checks + 18), (true, checks + 19));
+}
+
+/// Returns the files of a folder with their content; folders have none.
+fn contents(folder: &Path) -> Vec<(PathBuf, Vec<u8>)> {
+    let paths = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
+    let mut found: Vec<_> = paths.map(|path| (path.clone(), fs::read(path).unwrap_or_default())).collect();
+    found.sort();
+    found
+}
+
+#[test]
+fn inputs_of_a_scene_are_not_replaced() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    let (start, _) = SCENE.split_once("[models.ring]").unwrap();
+    let scene = |keys: &str| format!("{start}[models.m]\n{keys}\n[[bodies]]\nmodel = \"m\"\n");
+    // The scene, its keys, and the input that the simulation would replace or remove. The inputs are not read.
+    for (name, keys, input) in [
+        ("scene.toml", "file = \"animation.glb\"", "animation.glb"),
+        ("scene.toml", "file = \"animation.glb#Body\"", "animation.glb"),
+        ("scene.toml", "file = \"x.obj\"\nmodes = \"trajectories.npz\"", "trajectories.npz"),
+        ("scene.toml", "file = \"x.obj\"\nmodes = \"x.U\"\nforces = \"states.log\"", "states.log"),
+        ("scene.toml", "file = \"x.obj\"\nsolid = \"checkpoint.bin\"\nkind = \"linear\"", "checkpoint.bin"),
+        ("scene.toml", "file = \"sound.wav\"\nkind = \"linear\"", "sound.wav"),
+        ("summary.json", "shape = \"spring-4k\"\nkind = \"linear\"", "summary.json"),
+    ] {
+        fs::write(at(input), b"an input").unwrap();
+        fs::write(at(name), scene(keys)).unwrap();
+        let before = contents(folder.path());
+        for restart in [false, true] {
+            let request = Request { scene: at(name), restart, ..request(folder.path()) };
+            let message = simulate(&request, &()).err().unwrap().to_string();
+            let cause = "is an input of the scene: choose another folder with out";
+            assert_eq!(message, format!("{}: {cause}", at(input).display()));
+            assert!(contents(folder.path()) == before, "{keys}");
+        }
+        fs::remove_file(at(input)).unwrap();
+    }
+}
+
+#[test]
+fn files_of_others_are_not_replaced() {
+    for name in ["report.html", "summary.json", "sound.wav", "checkpoint.bin", "states.log"] {
+        let folder = tempfile::tempdir().unwrap();
+        fs::write(folder.path().join(name), "a file of the user\n".repeat(30)).unwrap();
+        let before = contents(folder.path());
+        for restart in [false, true] {
+            let request = Request { steps: Some(3), restart, ..request(folder.path()) };
+            let message = simulate(&request, &()).err().unwrap().to_string();
+            let cause = "exists and is not of a simulation: choose another folder with out, or move it away";
+            assert!(message.ends_with(&format!("{name}: {cause}")), "{message}");
+            assert!(contents(folder.path()) == before, "{name}");
+        }
+    }
+}
+
+#[test]
+fn folders_of_simulations_are_used_again() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    let run = |restart: bool| {
+        let request = Request { steps: Some(3), restart, ..request(folder.path()) };
+        let run = simulate(&request, &())?;
+        let steps = run.history.len();
+        written(run).map(|_| steps)
+    };
+    assert_eq!(run(false).unwrap(), 3);
+    // With all of its files; without its log and checkpoint; with the log alone, as before the first checkpoint.
+    assert_eq!((run(false).unwrap(), run(true).unwrap()), (3, 3));
+    for restart in [false, true] {
+        for name in ["states.log", "checkpoint.bin"] {
+            fs::remove_file(at(name)).unwrap();
+        }
+        assert_eq!(run(restart).unwrap(), 3);
+    }
+    fs::remove_file(at("checkpoint.bin")).unwrap();
+    assert_eq!(run(false).unwrap(), 3);
+    // The log of another build of the program.
+    let mut log = fs::read(at("states.log")).unwrap();
+    log[0] ^= 1;
+    for (path, _) in contents(folder.path()) {
+        fs::remove_file(path).unwrap();
+    }
+    fs::write(at("states.log"), log).unwrap();
+    let message = run(false).unwrap_err().to_string();
+    assert!(message.contains("states.log: this file belongs to another scene"), "{message}");
+    assert_eq!(run(true).unwrap(), 3);
 }
 
 #[test]

@@ -4,8 +4,9 @@ use glam::DVec3;
 use sscc::{Modes, TriMesh};
 
 use crate::element::{CUBE_FACES, TET_FACES};
+use crate::interior::{sorted, tets_within_or_apart};
 use crate::second_order::middle;
-use crate::{Solid, SolidError, VolumeMesh, tets_within};
+use crate::{Solid, SolidError, VolumeMesh};
 
 /// Boundary of a solid.
 #[derive(Clone, Debug, PartialEq)]
@@ -40,19 +41,73 @@ impl Solid {
 }
 
 impl VolumeMesh {
-    /// Returns the surface of the elements with all vertices of the file. Elements may be flat, inverted or overlap;
-    /// tetrahedra outside of the surface that the file lists are left out. Triangles are in the order of
-    /// [`Solid::boundary`].
+    /// Returns the surface of the elements with all vertices of the file. Elements may be flat, inverted or overlap. Where
+    /// tetrahedra fill the convex hull of the surface that the file lists, those outside of it are left out
+    /// ([`VolumeMesh::tets_left_out`]); a region that has no common faces with them and with those inside is kept. Listed
+    /// faces of no element are not added. Triangles are in the order of [`Solid::boundary`].
     ///
     /// # Errors
     /// When three or more elements share a face; when no face belongs to exactly one element.
     pub fn surface_mesh(&self) -> Result<TriMesh, SolidError> {
-        let within = tets_within(self.tets(), self.surface());
-        let kept: Vec<usize> = (0..within.len()).filter(|tet| within[*tet]).collect();
+        let is_kept = self.kept_tets();
+        let kept: Vec<usize> = (0..is_kept.len()).filter(|tet| is_kept[*tet]).collect();
         let tets: Vec<[u32; 4]> = kept.iter().map(|tet| self.tets()[*tet]).collect();
         let middles = |tet: usize| self.middles().get(*kept.get(tet)?);
         let node = |tet: usize, k: usize| middles(tet).map(|middles| middles[k - 4]);
         Ok(TriMesh::new(self.vertices().to_vec(), outer_triangles(&tets, node, self.cubes())?)?)
+    }
+
+    /// Returns the number of tetrahedra that [`VolumeMesh::surface_mesh`] leaves out.
+    pub fn tets_left_out(&self) -> usize {
+        self.kept_tets().iter().filter(|is_kept| !**is_kept).count()
+    }
+
+    /// Returns for each triangle whether it is a face of an element that [`VolumeMesh::surface_mesh`] keeps, or a part of a
+    /// face: half a face of a cube, on either side of a diagonal, or a quarter of a face of a tetrahedron of second
+    /// order. Costs O(n log n) in the number of elements and triangles.
+    pub fn has_faces(&self, triangles: &[[u32; 3]]) -> Vec<bool> {
+        if triangles.is_empty() {
+            return Vec::new();
+        }
+        let mut known: Vec<([u32; 3], bool)> = triangles.iter().map(|t| (sorted(*t), false)).collect();
+        known.sort_unstable();
+        known.dedup();
+        self.for_each_part_of_faces(|part| {
+            if let Ok(at) = known.binary_search_by_key(&sorted(part), |(corners, _)| *corners) {
+                known[at].1 = true;
+            }
+        });
+        let is_found = |triangle: &[u32; 3]| {
+            let at = known.binary_search_by_key(&sorted(*triangle), |(corners, _)| *corners);
+            at.is_ok_and(|at| known[at].1)
+        };
+        triangles.iter().map(is_found).collect()
+    }
+
+    /// Calls `call` with every triangle that [`VolumeMesh::has_faces`] accepts.
+    fn for_each_part_of_faces(&self, mut call: impl FnMut([u32; 3])) {
+        let is_kept = self.kept_tets();
+        for (number, tet) in self.tets().iter().enumerate().filter(|(number, _)| is_kept[*number]) {
+            for face in TET_FACES {
+                let corners = face.map(|k| tet[k]);
+                call(corners);
+                if let Some(middles) = self.middles().get(number) {
+                    let [i, j, k] = face;
+                    let of_edges = [[i, j], [j, k], [k, i]].map(|[i, j]| middles[middle(i, j) - 4]);
+                    quarters(corners, of_edges).into_iter().for_each(&mut call);
+                }
+            }
+        }
+        for cube in self.cubes() {
+            for [a, b, c, d] in CUBE_FACES.map(|face| face.map(|k| cube[k])) {
+                [[a, b, c], [a, c, d], [a, b, d], [b, c, d]].into_iter().for_each(&mut call);
+            }
+        }
+    }
+
+    /// Returns for each tetrahedron whether its faces belong to the surface.
+    fn kept_tets(&self) -> Vec<bool> {
+        tets_within_or_apart(self.tets(), self.surface())
     }
 }
 
@@ -86,13 +141,17 @@ fn outer_triangles(
         let middles = [[a, b], [b, c], [c, a]].map(|[i, j]| node(at / 4, middle(i, j)));
         match middles {
             [Some(ab), Some(bc), Some(ca)] if at < faces_of_tets => {
-                let [a, b, c] = [face[0], face[1], face[2]];
-                triangles.extend([[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]);
+                triangles.extend(quarters([face[0], face[1], face[2]], [ab, bc, ca]));
             }
             _ => triangles.extend((2..face.len()).map(|k| [face[0], face[k - 1], face[k]])),
         }
     }
     Ok(triangles)
+}
+
+/// Returns the four triangles of a face of second order: its corners, then the middles of its edges 0 1, 1 2 and 2 0.
+fn quarters([a, b, c]: [u32; 3], [ab, bc, ca]: [u32; 3]) -> [[u32; 3]; 4] {
+    [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]
 }
 
 impl Boundary {
@@ -170,6 +229,55 @@ mod tests {
         };
         let refused = VolumeMesh::new(three).unwrap().surface_mesh();
         assert!(matches!(refused, Err(SolidError::OverlappingElements { .. })));
+    }
+
+    /// A mesh of the given elements, one material and vertices that may be anywhere.
+    fn mesh(vertices: u32, tets: &[[u32; 4]], cubes: &[[u32; 8]], surface: &[[u32; 3]]) -> VolumeMesh {
+        let parts = VolumeMeshParts {
+            vertices: (0..vertices).map(|v| DVec3::splat(f64::from(v))).collect(),
+            tets: tets.to_vec(),
+            cubes: cubes.to_vec(),
+            surface: surface.to_vec(),
+            materials: vec![NamedMaterial::default()],
+            element_material: vec![0; tets.len() + cubes.len()],
+            ..VolumeMeshParts::default()
+        };
+        VolumeMesh::new(parts).unwrap()
+    }
+
+    #[test]
+    fn the_surface_leaves_out_only_what_fills_the_hull_of_the_listed_surface() {
+        let listed = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]];
+        let filling = mesh(5, &[[0, 1, 2, 3], [0, 2, 1, 4]], &[], &listed);
+        assert_eq!((filling.surface_mesh().unwrap().faces().len(), filling.tets_left_out()), (4, 1));
+        // A face of a tetrahedron that is left out belongs to no element of the surface.
+        assert_eq!(filling.has_faces(&[[2, 1, 0], [0, 1, 4]]), [true, false]);
+        let apart = mesh(8, &[[0, 1, 2, 3], [4, 5, 6, 7]], &[], &listed);
+        assert_eq!((apart.surface_mesh().unwrap().faces().len(), apart.tets_left_out()), (8, 0));
+        assert_eq!(apart.has_faces(&[[2, 1, 0], [4, 6, 7], [0, 1, 4]]), [true, true, false]);
+    }
+
+    #[test]
+    fn triangles_are_faces_of_elements_or_parts_of_faces() {
+        let cube = mesh(9, &[], &[[0, 1, 2, 3, 4, 5, 6, 7]], &[]);
+        assert_eq!(
+            cube.has_faces(&[[0, 1, 2], [3, 2, 0], [1, 3, 2], [0, 1, 6], [0, 1, 8]]),
+            [true, true, true, false, false]
+        );
+        assert_eq!(cube.has_faces(&[]), [false; 0]);
+        let linear = mesh(10, &[[0, 1, 2, 3]], &[], &[]);
+        let second_order = VolumeMesh::new(VolumeMeshParts {
+            vertices: linear.vertices().to_vec(),
+            tets: linear.tets().to_vec(),
+            middles: vec![[4, 5, 6, 7, 8, 9]],
+            materials: vec![NamedMaterial::default()],
+            element_material: vec![0],
+            ..VolumeMeshParts::default()
+        });
+        // The middles of the edges 0 1, 1 2 and 2 0 are the vertices 4, 5 and 6.
+        let triangles = [[2, 0, 1], [0, 4, 6], [6, 5, 4], [0, 4, 5]];
+        assert_eq!(second_order.unwrap().has_faces(&triangles), [true, true, true, false]);
+        assert_eq!(linear.has_faces(&triangles), [true, false, false, false]);
     }
 
     #[test]

@@ -31,7 +31,8 @@ mod sweep;
 mod values;
 mod view;
 
-use std::ffi::OsString;
+use std::ffi::{OsStr, OsString};
+use std::path::Path;
 
 use clap::error::ErrorKind;
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
@@ -114,21 +115,20 @@ pub enum Command {
 /// When it is invalid, or asks for help or the version.
 pub fn parse(typed: impl IntoIterator<Item = OsString>) -> Result<Cli, clap::Error> {
     let mut command = Cli::command();
-    let matches = command.try_get_matches_from_mut(with_joined_switches(typed))?;
+    let matches = command.try_get_matches_from_mut(with_joined_values(typed))?;
     let refused = |cause| command.error(ErrorKind::MissingRequiredArgument, cause);
     requirements::check(&matches).map_err(refused)?;
     Cli::from_arg_matches(&matches)
 }
 
-/// Joins `--weld on` and `--weld off` to one argument. The value of `--weld` is optional, so the parser would take a word
-/// after it for the name of a file.
-fn with_joined_switches(typed: impl IntoIterator<Item = OsString>) -> Vec<OsString> {
+/// Joins flags whose value is optional, such as `--weld`, with a value in the next word, such as `off`: the parser would take the
+/// word for the name of a file. A word that is the name of a file remains one.
+fn with_joined_values(typed: impl IntoIterator<Item = OsString>) -> Vec<OsString> {
     let mut joined: Vec<OsString> = Vec::new();
     let mut has_ended = false;
     for word in typed {
-        let is_value = word == "on" || word == "off";
         match joined.last_mut() {
-            Some(last) if !has_ended && is_value && last == "--weld" => {
+            Some(last) if !has_ended && is_value_of(last, &word) && !Path::new(&word).exists() => {
                 last.push("=");
                 last.push(word);
             }
@@ -141,14 +141,27 @@ fn with_joined_switches(typed: impl IntoIterator<Item = OsString>) -> Vec<OsStri
     joined
 }
 
+/// Whether a word can only be the value of a flag whose value is optional.
+fn is_value_of(flag: &OsStr, word: &OsStr) -> bool {
+    let (Some(flag), Some(word)) = (flag.to_str(), word.to_str()) else { return false };
+    match flag {
+        "--weld" => word == "on" || word == "off",
+        "--ignore-rest" | "--intervals" => word.parse::<u32>().is_ok(),
+        "--gravity" => {
+            word.split(',').count() == 3 && word.split(',').all(|part| part.parse::<f64>().is_ok())
+        }
+        _ => false,
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
-    fn the_value_of_weld_may_follow_a_blank() {
+    fn optional_values_may_follow_a_blank() {
         let weld = |words: &str| {
-            let words = with_joined_switches(words.split(' ').map(OsString::from));
+            let words = with_joined_values(words.split(' ').map(OsString::from));
             match Cli::try_parse_from(words).map(|cli| cli.command) {
                 Ok(Command::Check(check)) => Some((check.options.weld, check.meshes)),
                 _ => None,
@@ -159,6 +172,23 @@ mod tests {
         assert_eq!(weld("sscc check --weld=off a.obj"), Some((Some(Switch::Off), vec![])));
         assert_eq!(weld("sscc check a.obj --weld b.obj"), Some((Some(Switch::On), vec!["b.obj".into()])));
         assert_eq!(weld("sscc check a.obj -- off"), Some((None, vec!["off".into()])));
+        for (typed, expected) in [
+            ("check a.obj --ignore-rest 1", "check a.obj --ignore-rest=1"),
+            ("check --ignore-rest a.obj", "check --ignore-rest a.obj"),
+            ("check --ignore-rest -- 1", "check --ignore-rest -- 1"),
+            ("sweep a.glb --intervals 11 --json", "sweep a.glb --intervals=11 --json"),
+            ("load a.npz --gravity 0,-9.81,0 -o q.npy", "load a.npz --gravity=0,-9.81,0 -o q.npy"),
+            ("load a.npz --gravity 0,1 -o q.npy", "load a.npz --gravity 0,1 -o q.npy"),
+            ("check a.obj --weld 1", "check a.obj --weld 1"),
+        ] {
+            let joined = with_joined_values(typed.split(' ').map(OsString::from));
+            assert_eq!(joined, expected.split(' ').map(OsString::from).collect::<Vec<_>>());
+        }
+        // The tests run in the folder of the crate, which has a folder `src`.
+        assert!(Path::new("src").exists());
+        assert!(
+            is_value_of("--weld".as_ref(), "on".as_ref()) && !is_value_of("--weld".as_ref(), "src".as_ref())
+        );
     }
 
     #[test]

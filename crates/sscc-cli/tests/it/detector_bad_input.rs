@@ -33,6 +33,11 @@ fn invalid_frames_and_animations_are_refused() {
         fs::write(folder.join(name).join("2.obj"), text).unwrap();
     }
     fs::create_dir(folder.join("empty")).unwrap();
+    // Without the second frame the motion would go from the first one to the third one.
+    fs::create_dir(folder.join("gap")).unwrap();
+    for name in ["1.obj", "2.glb", "3.obj"] {
+        fs::write(folder.join("gap").join(name), obj(1.0)).unwrap();
+    }
     for (frames, named) in [
         ("missing.npy", "missing.npy: not found"),
         ("missing", "missing: not found"),
@@ -50,7 +55,14 @@ fn invalid_frames_and_animations_are_refused() {
         ("other", "2.obj: triangle 1 (counted from 0) of this frame differs from the mesh (mesh.obj)"),
         ("longer", "2.obj: this frame has 7 vertices, the mesh (mesh.obj) has 6"),
         ("broken", "2.obj: line 1: "),
-        ("empty", "there is no frame mesh in this folder"),
+        (
+            "empty",
+            "empty: there is no frame mesh in this folder: frames are .obj, .off, .ply, .stl, .vtu or .vtk",
+        ),
+        (
+            "gap",
+            "gap: 2.glb is no frame: frames are .obj, .off, .ply, .stl, .vtu or .vtk; convert it or move it away",
+        ),
     ] {
         let run = sscc(folder, &["check", "mesh.obj", "--frames", frames, "--json"]);
         // The first frame has no answer: standard output stays empty.

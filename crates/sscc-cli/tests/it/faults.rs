@@ -169,6 +169,41 @@ fn files_that_cannot_grow_stay_old() {
     assert_eq!(files(folder), before);
 }
 
+#[test]
+fn read_only_files_stay_and_links_are_followed() {
+    use std::os::unix::fs::{PermissionsExt, symlink};
+    let directory = folder();
+    let folder = directory.path();
+    fs::create_dir(folder.join("big")).unwrap();
+    let before = files(folder).len() + 1;
+    for (name, args) in [WRITERS[0], WRITERS[1], WRITERS[2], WRITERS[4]] {
+        let path = folder.join(name);
+        fs::write(&path, OLD).unwrap();
+        fs::set_permissions(&path, fs::Permissions::from_mode(0o444)).unwrap();
+        let run = sscc(folder, args);
+        let error = run.stderr.lines().find(|line| line.starts_with("error: ")).unwrap_or_default();
+        assert_eq!(run.code, Some(2), "{run:?}");
+        let end = "cannot be written: it is read-only: make it writable, or choose another name";
+        assert!(error.ends_with(&format!("{name}: {end}")), "{error}");
+        assert!(fs::read(&path).unwrap() == OLD, "{name}");
+        assert_eq!(files(folder).len(), before, "{name}");
+        fs::remove_file(&path).unwrap();
+
+        // The link stays, and the new file is where the old one was, with the permissions of the old one.
+        let target = folder.join("big/file");
+        fs::write(&target, OLD).unwrap();
+        fs::set_permissions(&target, fs::Permissions::from_mode(0o640)).unwrap();
+        symlink("big/file", &path).unwrap();
+        let run = sscc(folder, args);
+        assert!(matches!(run.code, Some(0 | 1)), "{run:?}");
+        assert!(fs::symlink_metadata(&path).unwrap().is_symlink(), "{name}");
+        assert!(fs::read(&target).unwrap() != OLD, "{name}");
+        assert_eq!(fs::metadata(&target).unwrap().permissions().mode() & 0o777, 0o640, "{name}");
+        assert_eq!((files(folder).len(), files(&folder.join("big")).len()), (before, 1), "{name}");
+        fs::remove_file(&path).unwrap();
+    }
+}
+
 /// Runs a command that writes to a file system of 4 kB, which an old file fills. It is mounted for this command only.
 fn on_full_disk(folder: &Path, name: &str, args: &[&str]) -> (Run, Vec<String>) {
     let script = "mount -t tmpfs -o size=4k none small && printf 'an old file' > small/\"$1\" && shift && \"$@\" 1>&2

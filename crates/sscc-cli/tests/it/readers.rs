@@ -206,6 +206,42 @@ fn surfaces_of_solids_are_meshes() {
     assert_eq!(found.code, Some(1), "{found:?}");
 }
 
+/// No region and no face of a file is left out without a warning.
+#[test]
+fn all_regions_and_faces_of_solids_are_checked() {
+    let head = "MeshVersionFormatted 1\nDimension 3\nVertices";
+    let first = "0 0 0 0\n4 0 0 0\n0 4 0 0\n0 0 4 0\n";
+    let faces = "Triangles 4\n1 2 3 1\n1 2 4 1\n1 3 4 1\n2 3 4 1\nEnd\n";
+    // The second tetrahedron pierces the first one, whose faces alone are listed.
+    let regions = format!(
+        "{head} 8\n{first}1 1 1 0\n5 1 1 0\n1 5 1 0\n1 1 5 0\nTetrahedra 2\n1 2 3 4 1\n5 6 7 8 2\n{faces}"
+    );
+    // The triangle pierces the tetrahedron.
+    let free = format!(
+        "{head} 7\n{first}1 1 -1 0\n1 1 1 0\n2 1 1 0\nTetrahedra 1\n1 2 3 4 0\nTriangles 1\n5 6 7 0\nEnd\n"
+    );
+    // The second tetrahedron is outside the listed faces, and has one of them.
+    let filling = format!("{head} 5\n{first}1 1 -4 0\nTetrahedra 2\n1 2 3 4 0\n1 3 2 5 0\n{faces}");
+    let directory = folder(&[
+        ("regions.mesh", regions.as_bytes()),
+        ("free.mesh", free.as_bytes()),
+        ("filling.mesh", filling.as_bytes()),
+    ]);
+    let added = "1 triangles of the file belong to no element: they are added after those of the elements";
+    let left_out = "1 tetrahedra outside the surface of the file are left out";
+    for (name, code, warning) in
+        [("regions.mesh", 1, None), ("free.mesh", 1, Some(added)), ("filling.mesh", 0, Some(left_out))]
+    {
+        let found = sscc(directory.path(), &["check", name, "--json"]);
+        let expected = warning.map_or_else(String::new, |warning| format!("warning: {name}: {warning}\n"));
+        assert_eq!((found.code, found.stderr.as_str()), (Some(code), expected.as_str()), "{found:?}");
+        let pairs: Vec<[usize; 2]> = serde_json::from_value(found.json()[0]["pairs"].clone()).unwrap();
+        assert_eq!(pairs.is_empty(), code == 0, "{found:?}");
+        // Triangles of the first tetrahedron with those after them.
+        assert!(pairs.iter().all(|[a, b]| *a < 4 && *b >= 4), "{found:?}");
+    }
+}
+
 #[test]
 fn materials_whose_stiffness_is_not_computed_are_refused() {
     let veg = |materials: &str| {

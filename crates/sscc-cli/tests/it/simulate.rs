@@ -354,6 +354,31 @@ fn the_steps_before_a_failure_are_written() {
 }
 
 #[test]
+fn inputs_and_files_of_others_are_refused() {
+    let folder = folder(SCENE);
+    let write = |name: &str, text: &str| fs::write(folder.path().join(name), text).unwrap();
+    fs::create_dir(folder.path().join("d")).unwrap();
+    let (start, _) = SCENE.split_once("[models.spring]").unwrap();
+    let model = "[models.m]\nfile = \"animation.glb\"\n[[bodies]]\nmodel = \"m\"\n";
+    write("d/scene.toml", &format!("{start}{model}"));
+    write("d/animation.glb", "a model");
+    write("report.html", "a page");
+    let before = files(folder.path());
+    let restarts: [&[&str]; 2] = [&[], &["--restart"]];
+    for restart in restarts {
+        let run = simulate(folder.path(), &[&["d/scene.toml", "--out", "d"], restart].concat());
+        let cause = "is an input of the scene: choose another folder with --out";
+        assert_eq!(run.refusal(), format!("error: d/animation.glb: {cause}"));
+        let run = simulate(folder.path(), &[&["scene.toml", "--out", "."], restart].concat());
+        let cause = "exists and is not of a simulation: choose another folder with --out, or move it away";
+        assert_eq!(run.refusal(), format!("error: ./report.html: {cause}"));
+    }
+    let read = |name: &str| fs::read_to_string(folder.path().join(name)).unwrap();
+    assert_eq!([read("d/animation.glb"), read("report.html")], ["a model", "a page"]);
+    assert_eq!((files(folder.path()), files(&folder.path().join("d")).len()), (before, 2));
+}
+
+#[test]
 fn invalid_scenes_and_requests_are_refused() {
     let folder = folder(SCENE);
     let refused = |from: &str, to: &str| {

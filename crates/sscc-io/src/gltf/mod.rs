@@ -45,8 +45,8 @@ pub use joined::PrimitiveRange;
 pub use morph::MorphModel;
 pub use scene::{
     AnimatedScene, AnimationContents, AnimationInfo, Contents, MeshContents, MeshNode, MeshNodeContents,
-    NamedPart, PlacedMesh, ScenePose, SkinWeights, count_meshes, parse_contents, parse_placed_mesh,
-    parse_scene, read_contents, read_model_placement, read_placed_mesh, read_scene,
+    NamedPart, PlacedMesh, ScenePose, SceneState, SkinWeights, count_meshes, parse_contents,
+    parse_placed_mesh, parse_scene, read_contents, read_model_placement, read_placed_mesh, read_scene,
 };
 
 /// Whether the ending of a file name is that of a glTF file: `.gltf`, `.glb` or `.vrm`, an avatar in binary glTF.

@@ -3,11 +3,14 @@
 //! The module has its own parser: general parsers renumber vertices by first use and drop unused ones, so that modes
 //! for the `v` lines of the file no longer fit.
 
+mod keywords;
+
 use std::borrow::Cow;
 
 use glam::DVec3;
 use sscc::TriMesh;
 
+use self::keywords::check_skipped;
 use crate::error::quoted;
 use crate::named_groups::{DEFAULT, GroupCollector, GroupsBy, NamedGroups, own_name};
 use crate::polygons::{Polygons, Soup};
@@ -19,12 +22,13 @@ use crate::{FormatError, Place};
 ///
 /// A weight or colour after `v x y z` is skipped. Corners in `f` lines have the form `a`, `a/b`, `a//c` or `a/b/c`, where
 /// `a` counts from 1, or backwards from -1, the last vertex so far. A `v` or `f` line that ends in a backslash continues
-/// on the next line. `#` begins a comment.
+/// on the next line. `#` begins a comment. Words that are no keywords of OBJ can be private extensions, and are skipped, too.
 ///
 /// # Errors
 /// When a line is malformed, an index is 0 or names no vertex, a face has fewer than 3 corners, there are no vertices or
 /// no faces, or [`TriMesh::new`] rejects the mesh; when a line makes a free-form surface or calls another file, whose
-/// faces would be missing.
+/// faces would be missing; when a line begins with a malformed keyword of a vertex or face (`F`, `v:`, `f4`), or one after a
+/// face with a vertex number.
 pub fn parse(bytes: &[u8]) -> Result<TriMesh, FormatError> {
     soup(bytes)?.into_mesh()
 }
@@ -68,6 +72,8 @@ fn read(
     let mut positions = Vec::new();
     let mut polygons = Polygons::new(1);
     let mut corners = Vec::new();
+    // Whether a face was the last statement.
+    let mut follows_face = false;
     let mut lines = Lines::new(bytes)?;
     while let Some((line, whole)) = lines.next() {
         let text = without_comment(whole).trim_ascii_end();
@@ -85,15 +91,8 @@ fn read(
                 }
                 polygons.push(&corners, Place::Line(line))?;
             }
-            b"surf" | b"bzp" | b"bsp" | b"cdp" => {
-                let cause = "free-form surfaces are not supported: convert them to polygons";
-                return Err(of_keyword(keyword, cause, line));
-            }
-            b"call" | b"csh" => {
-                let cause = "other files and commands are not read: put their lines into this file";
-                return Err(of_keyword(keyword, cause, line));
-            }
             _ => {
+                check_skipped(keyword, follows_face, line)?;
                 let whole = whole.trim_ascii();
                 let other = &whole.strip_suffix(b"\\").unwrap_or(whole)[keyword.len()..];
                 // A number sign next to the keyword begins a comment.
@@ -101,12 +100,11 @@ fn read(
                 on_other(keyword, other, polygons.triangle_count())?;
             }
         }
+        if !keyword.is_empty() {
+            follows_face = matches!(keyword, b"f" | b"fo");
+        }
     }
     polygons.finish(positions)
-}
-
-fn of_keyword(keyword: &[u8], cause: &str, line: usize) -> FormatError {
-    FormatError::line(line, format!("{}: {cause}", quoted(&String::from_utf8_lossy(keyword))))
 }
 
 /// Returns a line with its continuation lines. Only `v` and `f` lines are joined: a comment or a path may end in a
@@ -224,6 +222,132 @@ mod tests {
         assert!(message("csh cat more.obj\nf 1 2 3\n").starts_with("line 5: 'csh': other files"));
         // Curves have no faces.
         assert_eq!(faces("cstype bezier\ndeg 3\ncurv 0 1 1 2 3 4\nend\nf 1 2 3\n"), [[0, 1, 2]]);
+    }
+
+    /// Two triangles that cross, the first as a face.
+    const CROSSING: &str = "v 0 0 0\nv 4 0 0\nv 0 4 0\nv 1 1 -1\nv 1 1 1\nv 2 1 1\nf 1 2 3\n";
+
+    fn crossing(text: impl AsRef<[u8]>) -> Result<Vec<[u32; 3]>, String> {
+        match parse(&[CROSSING.as_bytes(), text.as_ref()].concat()) {
+            Ok(mesh) => Ok(mesh.faces().to_vec()),
+            Err(error) => Err(error.to_string()),
+        }
+    }
+
+    #[test]
+    fn a_single_cr_ends_a_line_in_a_file_with_other_line_ends() {
+        for before in
+            ["usemtl red", "# note", "g b", "v 9 9 9 # c", "vn 0 0 1", "s off", "xyz_extension 1", ""]
+        {
+            let found = crossing(format!("{before}\rf 4 5 6\n"));
+            assert_eq!(found.unwrap(), [[0, 1, 2], [3, 4, 5]], "{before}");
+            let wrong = crossing(format!("{before}\rf 4 5 60\n")).unwrap_err();
+            assert!(wrong.starts_with("line 9: the face names vertex 60"), "{before}: {wrong}");
+        }
+        // The reverse: LF in a file whose other lines end with CR.
+        let text = format!("{}# note\nf 4 5 6", CROSSING.replace('\n', "\r"));
+        assert_eq!(parse(text.as_bytes()).unwrap().faces(), [[0, 1, 2], [3, 4, 5]]);
+        // Groups change at these lines.
+        let text = format!("{CROSSING}usemtl red\rf 4 5 6\n");
+        let found = groups(text.as_bytes(), GroupsBy::Material).unwrap();
+        assert_eq!((found.names.join("|").as_str(), found.of_triangle), ("default|red", vec![0, 1]));
+    }
+
+    #[test]
+    fn byte_order_marks_of_joined_files_are_skipped() {
+        for text in ["\u{feff}f 4 5 6\n", "\u{feff}\u{feff}f 4 5 6\n", "\u{feff}# c\r\n\u{feff}f 4 5 6\n"] {
+            assert_eq!(crossing(text).unwrap(), [[0, 1, 2], [3, 4, 5]], "{text:?}");
+        }
+        let refused = crossing(" \u{feff}f 4 5 6\n").unwrap_err();
+        assert!(refused.starts_with("line 8: "), "{refused}");
+        assert!(
+            refused.ends_with("is not a keyword of OBJ: write 'f', or begin the line with '#'"),
+            "{refused}"
+        );
+    }
+
+    #[test]
+    fn malformed_keywords_of_vertices_and_faces_are_refused() {
+        let way_out = "or begin the line with '#'";
+        for (text, word) in
+            [("F 4 5 6", "f"), ("V 9 9 9\nf 4 5 6", "v"), ("Fo 4 5 6", "fo"), ("BZP 1 2", "bzp")]
+        {
+            let found = text.split(' ').next().unwrap();
+            let cause = format!("line 8: '{found}' is not a keyword of OBJ: write '{word}', {way_out}");
+            assert_eq!(crossing(text).unwrap_err(), cause);
+        }
+        for text in [
+            "f\u{a0}4 5 6",
+            "f\x0b4 5 6",
+            "f\u{0}4 5 6",
+            "f4 5 6",
+            "f-3 -2 -1",
+            "f:4 5 6",
+            "\u{200b}f\u{a0}4 5 6",
+        ] {
+            let refused = crossing(format!("{text}\n")).unwrap_err();
+            assert!(
+                refused.starts_with("line 8: '") && refused.contains("write 'f' and a space, or"),
+                "{refused}"
+            );
+        }
+        assert!(crossing(b"f\xa04 5 6\n").unwrap_err().contains("write 'f' and a space"));
+        assert!(crossing("v\u{a0}9 9 9\n").unwrap_err().contains("write 'v' and a space"));
+        assert!(crossing("v9 9 9\n").unwrap_err().contains("write 'v' and a space"));
+        // The groups are of the same triangles.
+        let text = format!("{CROSSING}g a\nF 4 5 6\n");
+        let refused = groups(text.as_bytes(), GroupsBy::Group).unwrap_err().to_string();
+        assert!(refused.starts_with("line 9: 'F' is not a keyword"), "{refused}");
+    }
+
+    #[test]
+    fn private_extensions_of_real_files_are_skipped() {
+        for line in [
+            "vc 1 0 0",
+            "c 1.0 1.0 1.0",
+            "xyz_weights 1 2",
+            "v_color 1 1 1",
+            "f_tag 7",
+            "#MRGB ff0000",
+            "VN 0 0 1",
+            "vcolor 1",
+            "Faces: 88",
+            "version 2",
+            "Ka 1 1 1",
+            "newmtl red",
+            "g f 4 5 6",
+            "o V 1 2",
+            "// F 4 5 6",
+            "----",
+            "l 1 2 \\\n3 4",
+            "curv2 1 2 \\\n3",
+            "fl\u{e4}che 1",
+            "\u{a0}",
+            "\x1a",
+        ] {
+            let found = crossing(format!("{line}\nf 4 5 6\n"));
+            assert_eq!(found.unwrap(), [[0, 1, 2], [3, 4, 5]], "{line:?}");
+        }
+    }
+
+    /// The corners would be missing in the face.
+    #[test]
+    fn corners_in_a_line_without_a_backslash_before_it_are_refused() {
+        let refused = message("f 1 2 3\n4\n");
+        assert!(
+            refused.starts_with("line 6: '4' begins a line after a face: end the line before it"),
+            "{refused}"
+        );
+        for text in [
+            "f 1 2 3 \\\n# c\n4\n",
+            "f 1 2 3 \\\n\n4\n",
+            "f 1 2 3 \\\r\r\n4\n",
+            "f 1 2 3\r\r4/4 1\n",
+            "f 1 2 3\n-1",
+        ] {
+            assert!(message(text).contains("begins a line after a face"), "{text:?}");
+        }
+        assert_eq!(faces("f 1 2 3\n// 4\n3D\ng a\n4\n"), [[0, 1, 2]]);
     }
 
     #[test]

@@ -6,12 +6,15 @@
 //! The module has its own parser: it names the places of errors, and the crate `stl_io` welds equal vertices. Many
 //! binary files begin with `solid`, so the size decides between the forms.
 
+mod not_binary;
+mod text;
+mod words;
+
 use glam::DVec3;
 use sscc::TriMesh;
 
-use crate::error::quoted;
+use self::words::Words;
 use crate::polygons::Soup;
-use crate::text::{Lines, decoded, number, split_word};
 use crate::{FormatError, Place};
 
 /// Size of free text and count before the triangles of a binary file.
@@ -21,8 +24,10 @@ const HEADER: usize = 84;
 const TRIANGLE: usize = 50;
 
 /// Parses an STL file. The file is binary if its size is 84 + 50 n for its count n of triangles, else text if it begins
-/// with `solid` and has no zero byte among the first 1,024. Normals, attribute bytes and names of solids are skipped. A
-/// text file can have several solids.
+/// with `solid` and has no zero byte among the first 1,024. Normals, attribute bytes and names of solids are skipped.
+///
+/// A text file consists of words between white space, and can have several solids. The name after `solid` and `endsolid`, which
+/// may have any words, reaches to the end of its line, or to a facet in that line.
 ///
 /// Programs that do not follow the format write binary files of other sizes. These are read, too: data of the length that
 /// the attribute bytes declare after each triangle; fewer than 50 further bytes at the end; a count of 0 before whole
@@ -37,8 +42,9 @@ pub fn parse(bytes: &[u8]) -> Result<TriMesh, FormatError> {
 
 pub(super) fn soup(bytes: &[u8]) -> Result<Soup, FormatError> {
     let (positions, warning) = match binary(bytes) {
-        Err(_) if is_text(bytes) => (text(bytes)?, None),
-        read => read?,
+        Err(_) if is_text(bytes) => (text::parse(bytes)?, None),
+        Err(error) => return Err(not_binary::cause(bytes).unwrap_or(error)),
+        Ok(read) => read,
     };
     let Ok(vertices) = u32::try_from(positions.len()) else {
         return Err(FormatError::whole(format!(
@@ -52,8 +58,8 @@ pub(super) fn soup(bytes: &[u8]) -> Result<Soup, FormatError> {
 }
 
 fn is_text(bytes: &[u8]) -> bool {
-    let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
-    split_word(text).0.eq_ignore_ascii_case(b"solid") && !bytes[..bytes.len().min(1024)].contains(&0)
+    let begins_with_solid = Words::new(bytes).next_word().is_some_and(|word| word.is("solid"));
+    begins_with_solid && !bytes.iter().take(1024).any(|b| *b == 0)
 }
 
 /// Parses a binary file; returns three corners for each triangle, and a warning.
@@ -116,68 +122,6 @@ fn corners(triangles: &[[u8; TRIANGLE]]) -> Vec<DVec3> {
         DVec3::from_array([x, y, z].map(|axis| f32::from_le_bytes(axis).into()))
     };
     triangles.iter().flat_map(|t| t[12..48].as_chunks().0).map(corner).collect()
-}
-
-/// Parses a text file; returns three corners for each facet.
-fn text(bytes: &[u8]) -> Result<Vec<DVec3>, FormatError> {
-    let mut positions = Vec::new();
-    // State of the parser: outside a solid, in a solid, in a facet, in its loop after n corners, after the loop.
-    let mut state = State::Outside;
-    for (line, text) in Lines::new(bytes)? {
-        let refused = |cause: String| Err(FormatError::line(line, cause));
-        let (keyword, arguments) = split_word(text);
-        state = match (state, keyword.to_ascii_lowercase().as_slice()) {
-            (state, b"") => state,
-            (State::Outside, b"solid") => State::Solid,
-            (State::Solid, b"facet") => State::Facet,
-            (State::Solid, b"endsolid") => State::Outside,
-            (State::Facet, b"outer") => State::Loop(0),
-            (State::Loop(corners @ 0..3), b"vertex") => {
-                positions.push(position(decoded(arguments, line)?, line)?);
-                State::Loop(corners + 1)
-            }
-            (State::Loop(3), b"endloop") => State::LoopEnd,
-            (State::LoopEnd, b"endfacet") => State::Solid,
-            (state, other) => {
-                let found = quoted(&String::from_utf8_lossy(other));
-                return refused(format!("{} expected, not {found}", state.expected()));
-            }
-        };
-    }
-    match state {
-        State::Outside => Ok(positions),
-        state => Err(FormatError::whole(format!("the file ends where {} was expected", state.expected()))),
-    }
-}
-
-#[derive(Clone, Copy)]
-enum State {
-    Outside,
-    Solid,
-    Facet,
-    Loop(u8),
-    LoopEnd,
-}
-
-impl State {
-    fn expected(self) -> &'static str {
-        match self {
-            Self::Outside => "'solid'",
-            Self::Solid => "'facet' or 'endsolid'",
-            Self::Facet => "'outer loop'",
-            Self::Loop(0..3) => "'vertex' (a facet has 3)",
-            Self::Loop(_) => "'endloop' (a facet has 3 vertices)",
-            Self::LoopEnd => "'endfacet'",
-        }
-    }
-}
-
-fn position(text: &str, line: usize) -> Result<DVec3, FormatError> {
-    let words: Vec<_> = text.split_ascii_whitespace().take(4).collect();
-    let [x, y, z] = words[..] else {
-        return Err(FormatError::line(line, "a vertex has 3 coordinates"));
-    };
-    Ok(DVec3::new(number(x, line)?, number(y, line)?, number(z, line)?))
 }
 
 #[cfg(test)]

@@ -8,24 +8,31 @@ use sscc::{Modes, TriMesh, limits};
 
 use super::named_modes::NamedModes;
 use super::vtk_frames;
+use crate::error::shown_name;
 use crate::folder_files::list_files;
+use crate::gltf::is_gltf;
 use crate::mesh::{is_mesh_name, read_soup};
+use crate::solid::is_solid_name;
+use crate::solid::tetgen::other_of_pair;
 use crate::solid::vtk::{Displacement, is_vtk_name};
 use crate::{FormatError, IoError};
 
 /// Maximum number of meshes in a folder.
 const MAX_MESHES: usize = 10_000;
 
+/// Endings of the files that are targets or frames.
+const ENDINGS: &str = ".obj, .off, .ply, .stl, .vtu or .vtk";
+
 /// Reads the targets of a neutral mesh: every mesh file and every grid of VTK in the folder, ordered by the bytes of
 /// their names, so `10.obj` comes before `9.obj`. The points of a grid are moved by its displacements. Mode k is target
 /// k minus the neutral mesh, each difference rounded to f64. Names are those of the files, without endings.
 ///
-/// Other files, folders, hidden files, and the neutral mesh itself are skipped.
+/// Folders, hidden files, the neutral mesh itself, and files without a mesh are skipped.
 ///
 /// # Errors
-/// When the folder cannot be read, or has no mesh or more than 10,000; when a target cannot be read, has another number
-/// of vertices, has faces that differ from the neutral ones (a mesh file may have none), or has a coordinate that is
-/// not finite or beyond [`limits::LARGEST`].
+/// When the folder cannot be read, has no target or more than 10,000, or has a solid or a glTF file, which cannot be one and
+/// would be missing; when a target cannot be read, has another number of vertices, has faces that differ from the neutral
+/// ones (a mesh file may have none), or has a coordinate that is not finite or beyond [`limits::LARGEST`].
 pub fn read(folder: &Path, neutral: &TriMesh, neutral_path: &Path) -> Result<NamedModes, IoError> {
     let request = |cause: String| IoError::request(folder, cause);
     // The neutral mesh may have another path (links, `..`).
@@ -48,12 +55,28 @@ pub fn read(folder: &Path, neutral: &TriMesh, neutral_path: &Path) -> Result<Nam
 
 /// Returns the mesh files of a folder without the neutral one (its canonical path), in natural order; at least one. `what`
 /// names them in messages.
+///
+/// # Errors
+/// When the folder cannot be read, has no mesh file or more than [`MAX_MESHES`], or has another file with a mesh: without it
+/// the sequence would have a gap.
 pub(crate) fn mesh_files(folder: &Path, neutral: Option<&Path>, what: &str) -> Result<Vec<PathBuf>, IoError> {
-    let is_neutral = |path: &Path| neutral.is_some() && fs::canonicalize(path).ok().as_deref() == neutral;
-    let paths = list_files(folder, |path| (is_mesh_name(path) || is_vtk_name(path)) && !is_neutral(path))?;
+    // A solid of TetGen has two files.
+    let second = neutral.and_then(other_of_pair).and_then(|second| fs::canonicalize(second).ok());
+    let of_neutral: Vec<&Path> = neutral.into_iter().chain(second.as_deref()).collect();
+    let is_neutral = |path: &Path| {
+        !of_neutral.is_empty()
+            && fs::canonicalize(path).is_ok_and(|path| of_neutral.contains(&path.as_path()))
+    };
+    let is_mesh = |path: &Path| is_mesh_name(path) || is_vtk_name(path);
+    let has_mesh = |path: &Path| is_mesh(path) || is_solid_name(path) || is_gltf(path);
+    let paths = list_files(folder, |path| has_mesh(path) && !is_neutral(path))?;
     let request = |cause: String| Err(IoError::request(folder, cause));
+    if let Some(other) = paths.iter().find(|path| !is_mesh(path)) {
+        let name = shown_name(other);
+        return request(format!("{name} is no {what}: {what}s are {ENDINGS}; convert it or move it away"));
+    }
     match paths.len() {
-        0 => request(format!("there is no {what} mesh in this folder")),
+        0 => request(format!("there is no {what} mesh in this folder: {what}s are {ENDINGS}")),
         count if count > MAX_MESHES => {
             request(format!("the folder has {count} {what} meshes: at most {MAX_MESHES} are allowed"))
         }
@@ -131,7 +154,8 @@ mod tests {
         let folder = directory.path();
         let mesh = crate::mesh::obj::parse(NEUTRAL.as_bytes()).unwrap();
         let message = || read(folder, &mesh, Path::new("none")).unwrap_err().to_string();
-        assert!(message().ends_with("there is no target mesh in this folder"));
+        let none = "there is no target mesh in this folder: targets are .obj, .off, .ply, .stl, .vtu or .vtk";
+        assert!(message().ends_with(none), "{}", message());
         fs::write(folder.join("a.obj"), NEUTRAL).unwrap();
         let with = |text: &str| {
             fs::write(folder.join("b.obj"), text).unwrap();
@@ -149,5 +173,70 @@ mod tests {
         assert!(with("v 1").contains("b.obj: line 1: "));
         let missing = read(&folder.join("c"), &mesh, Path::new("none")).unwrap_err().to_string();
         assert!(missing.ends_with("c: not found"));
+    }
+
+    #[test]
+    fn other_files_with_a_mesh_are_refused() {
+        for other in ["2.glb", "2.GLTF", "2.vrm", "2.mesh", "2.msh", "2.veg", "2.node", "2.ele"] {
+            let directory = tempfile::tempdir().unwrap();
+            let folder = directory.path();
+            fs::write(folder.join(other), "").unwrap();
+            let cause = |what: &str| {
+                format!(
+                    "{other} is no {what}: {what}s are .obj, .off, .ply, .stl, .vtu or .vtk; convert it or move it away"
+                )
+            };
+            let message = |what: &str| mesh_files(folder, None, what).unwrap_err().to_string();
+            assert!(message("frame").ends_with(&cause("frame")), "{}", message("frame"));
+            for name in ["1.obj", "3.obj"] {
+                fs::write(folder.join(name), NEUTRAL).unwrap();
+            }
+            assert!(message("frame").ends_with(&cause("frame")), "{}", message("frame"));
+            let mesh = crate::mesh::obj::parse(NEUTRAL.as_bytes()).unwrap();
+            let of_targets = read(folder, &mesh, &folder.join("1.obj")).unwrap_err().to_string();
+            assert!(of_targets.ends_with(&cause("target")), "{of_targets}");
+        }
+    }
+
+    #[test]
+    fn files_without_a_mesh_lie_beside_targets() {
+        let directory = tempfile::tempdir().unwrap();
+        let folder = directory.path();
+        fs::write(folder.join("a.obj"), NEUTRAL).unwrap();
+        for name in [
+            "a.mtl",
+            "a.png",
+            "a.txt",
+            "a.npy",
+            "a.npz",
+            "a.pc2",
+            "a.pvd",
+            "a.bin",
+            "a.model.safetensors",
+            "a.sscc.safetensors",
+            ".b.glb",
+            "mesh",
+        ] {
+            fs::write(folder.join(name), "x").unwrap();
+        }
+        fs::create_dir(folder.join("c.glb")).unwrap();
+        assert_eq!(mesh_files(folder, None, "frame").unwrap(), [folder.join("a.obj")]);
+    }
+
+    /// A solid may be the neutral mesh of targets beside it; TetGen writes two files.
+    #[test]
+    fn the_neutral_mesh_may_be_a_solid() {
+        for files in [&["n.mesh"][..], &["n.node", "n.ele"], &["n.ele", "n.NODE"]] {
+            let directory = tempfile::tempdir().unwrap();
+            let folder = directory.path();
+            for name in files.iter().chain(&["a.obj"]) {
+                fs::write(folder.join(name), NEUTRAL).unwrap();
+            }
+            let mesh = crate::mesh::obj::parse(NEUTRAL.as_bytes()).unwrap();
+            let NamedModes { names, .. } = read(folder, &mesh, &folder.join(files[0])).unwrap();
+            assert_eq!(names, ["a"], "{files:?}");
+            let elsewhere = read(folder, &mesh, Path::new("elsewhere.node")).unwrap_err().to_string();
+            assert!(elsewhere.contains(" is no target: "), "{elsewhere}");
+        }
     }
 }

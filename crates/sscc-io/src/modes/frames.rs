@@ -26,12 +26,12 @@ pub struct Frames {
 
 /// Reads every mesh file and every grid of VTK of a folder, in the natural order of their names without endings, so
 /// `9.obj` comes before `10.obj`, and `walk.obj` before `walk-1.obj`. The points of a grid are moved by its
-/// displacements. Other files, folders and hidden files are skipped.
+/// displacements. Folders, hidden files and files without a mesh are skipped.
 ///
 /// # Errors
-/// When the folder cannot be read, or has no mesh or more than 10,000; when a mesh cannot be read, has another number
-/// of vertices or faces other than those of the first one (a mesh file may have none), or a coordinate that is not
-/// finite or beyond [`sscc::limits::LARGEST`].
+/// When the folder cannot be read, has no mesh or more than 10,000, or has a solid or a glTF file, which cannot be a frame
+/// and would be missing; when a mesh cannot be read, has another number of vertices or faces other than those of the first
+/// one (a mesh file may have none), or a coordinate that is not finite or beyond [`sscc::limits::LARGEST`].
 pub fn read_frames(folder: &Path) -> Result<Frames, IoError> {
     let paths = frame_files(folder)?;
     let (mesh, warnings) = read_first(&paths[0])?;
@@ -123,7 +123,8 @@ mod tests {
         let directory = tempfile::tempdir().unwrap();
         let folder = directory.path();
         let message = || read_frames(folder).unwrap_err().to_string();
-        assert!(message().ends_with("there is no frame mesh in this folder"));
+        let none = "there is no frame mesh in this folder: frames are .obj, .off, .ply, .stl, .vtu or .vtk";
+        assert!(message().ends_with(none), "{}", message());
         std::fs::write(folder.join("a.obj"), FRAME).unwrap();
         let with = |text: &str| {
             std::fs::write(folder.join("b.obj"), text).unwrap();

@@ -33,6 +33,13 @@ pub fn parse_integers(bytes: &[u8]) -> Result<Array<i64>, FormatError> {
     array(bytes, NumberKind::Integers, integers)
 }
 
+/// Returns the number of entries whose bytes follow the header; None if the header is malformed or has another type.
+pub(crate) fn entry_count(bytes: &[u8]) -> Option<u64> {
+    let header = Header::parse(bytes, NumberKind::Floats).ok()?;
+    let body_bytes = bytes.len().checked_sub(header.body)?;
+    body_bytes.checked_div(header.item.size).map(|count| count as u64)
+}
+
 fn array<T>(
     bytes: &[u8],
     wanted: NumberKind,
@@ -83,9 +90,19 @@ impl<T: Copy> Array<T> {
 
     /// Returns all entries in C order (last axis fastest).
     pub fn to_c_order(&self) -> Vec<T> {
-        if self.strides == strides(&self.shape, false) {
-            return self.data.clone();
-        }
+        if self.is_c_order() { self.data.clone() } else { self.reordered() }
+    }
+
+    /// As [`Array::to_c_order`]. Entries that are in C order already are moved.
+    pub fn into_c_order(self) -> Vec<T> {
+        if self.is_c_order() { self.data } else { self.reordered() }
+    }
+
+    fn is_c_order(&self) -> bool {
+        self.strides == strides(&self.shape, false)
+    }
+
+    fn reordered(&self) -> Vec<T> {
         let mut index = vec![0; self.shape.len()];
         let mut at = 0;
         (0..self.data.len())
@@ -131,7 +148,7 @@ pub(super) fn floats(item: Item, bytes: &[u8]) -> Result<Vec<f64>, FormatError> 
                 "the integer {value} is beyond 2^53: save the array as float64"
             ))),
         };
-        return integers(item, bytes)?.into_iter().map(exact).collect();
+        return decoded(item, bytes, exact);
     }
     let twos = || bytes.as_chunks::<2>().0.iter().copied();
     let eights = || bytes.as_chunks::<8>().0.iter().copied();
@@ -159,15 +176,30 @@ fn half(bits: u16) -> f64 {
 }
 
 fn integers(item: Item, bytes: &[u8]) -> Result<Vec<i64>, FormatError> {
-    let widened = |bytes: &[u8]| {
-        let big_endian = |at: usize| bytes[if item.big { at } else { bytes.len() - 1 - at }];
-        let magnitude = (0..bytes.len()).fold(0_u64, |value, at| value << 8 | u64::from(big_endian(at)));
-        match item.class {
-            // Two shifts extend the sign from the top bit of the item to 64 bits.
-            Class::Signed => Ok((magnitude << (64 - 8 * bytes.len())) as i64 >> (64 - 8 * bytes.len())),
-            _ => i64::try_from(magnitude)
-                .map_err(|_| FormatError::whole(format!("the integer {magnitude} is too large"))),
-        }
-    };
-    bytes.chunks_exact(item.size).map(widened).collect()
+    decoded(item, bytes, Ok)
+}
+
+/// Decodes integers, and converts each one at once, so that there is no second array of wide numbers.
+fn decoded<T>(
+    item: Item,
+    bytes: &[u8],
+    convert: impl Fn(i64) -> Result<T, FormatError>,
+) -> Result<Vec<T>, FormatError> {
+    let mut numbers = Vec::with_capacity(bytes.len() / item.size);
+    for bytes in bytes.chunks_exact(item.size) {
+        numbers.push(convert(integer(item, bytes)?)?);
+    }
+    Ok(numbers)
+}
+
+/// Decodes one integer.
+fn integer(item: Item, bytes: &[u8]) -> Result<i64, FormatError> {
+    let widen = |value: u64, byte: &u8| value << 8 | u64::from(*byte);
+    let magnitude = if item.big { bytes.iter().fold(0, widen) } else { bytes.iter().rev().fold(0, widen) };
+    match item.class {
+        // Two shifts extend the sign from the top bit of the item to 64 bits.
+        Class::Signed => Ok((magnitude << (64 - 8 * bytes.len())) as i64 >> (64 - 8 * bytes.len())),
+        _ => i64::try_from(magnitude)
+            .map_err(|_| FormatError::whole(format!("the integer {magnitude} is too large"))),
+    }
 }

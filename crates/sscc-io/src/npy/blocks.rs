@@ -16,6 +16,9 @@ const MAX_HEADER: u64 = 1 << 20;
 /// Arrays in Fortran order are read as a whole up to this size of the file, in bytes.
 const MAX_FORTRAN: u64 = 1 << 30;
 
+/// Maximum size of the numbers of such an array, 8 bytes each: those of a file of float32 of that size.
+const MAX_FORTRAN_NUMBERS: u64 = 2 << 30;
+
 /// An open `.npy` file. A block is a range of its entries in C order.
 pub(crate) struct Blocks {
     path: PathBuf,
@@ -35,7 +38,8 @@ impl Blocks {
     ///
     /// # Errors
     /// When the file cannot be read or is a Git LFS pointer, its header is malformed, longer than 1 MiB or has another
-    /// type, or its length differs from the header; when it is in Fortran order and larger than 1 GiB.
+    /// type, or its length differs from the header; when it is in Fortran order and larger than 1 GiB, or 2 GiB as numbers
+    /// of 8 bytes.
     pub fn open(path: &Path) -> Result<Self, IoError> {
         let (file, size) = open_regular(path)?;
         Self::of_file(path, file, size)
@@ -50,16 +54,8 @@ impl Blocks {
         let header = Header::parse(&start, NumberKind::Floats).map_err(|error| error.of(path))?;
         let Header { item, fortran, shape, body } = header;
         check_size(&shape, item, body, size - body as u64).map_err(|error| error.of(path))?;
-        if fortran && size > MAX_FORTRAN {
-            let cause = format!(
-                "the array is in Fortran order and has {} MiB, more than the {} MiB that are read as a whole: save it in C \
-                 order (numpy.ascontiguousarray)",
-                size >> 20,
-                MAX_FORTRAN >> 20
-            );
-            return Err(FormatError::whole(cause).of(path));
-        }
         let body = if fortran {
+            check_fortran(item, size).map_err(|error| error.of(path))?;
             // The rest of the same file follows the same header, so the array has the shape that was checked.
             let mut whole = start;
             let rest = size - whole.len() as u64;
@@ -67,7 +63,9 @@ impl Blocks {
                 return Err(refused(io::Error::from(ErrorKind::OutOfMemory)));
             }
             file.take(rest).read_to_end(&mut whole).map_err(refused)?;
-            Body::Memory(parse(&whole).map_err(|error| error.of(path))?.to_c_order())
+            let array = parse(&whole).map_err(|error| error.of(path))?;
+            drop(whole);
+            Body::Memory(array.into_c_order())
         } else {
             Body::File { file: Mutex::new(file), start: body as u64, item }
         };
@@ -104,9 +102,27 @@ impl Blocks {
     }
 }
 
+/// Returns an error if an array in Fortran order is too large to be read as a whole. `size` is that of the file.
+fn check_fortran(item: Item, size: u64) -> Result<(), FormatError> {
+    let numbers = size.saturating_mul(8) / item.size as u64;
+    let (has, limit) = if size > MAX_FORTRAN {
+        (format!("has {} MiB", size >> 20), MAX_FORTRAN)
+    } else if numbers > MAX_FORTRAN_NUMBERS {
+        (format!("has {} MiB as float64", numbers >> 20), MAX_FORTRAN_NUMBERS)
+    } else {
+        return Ok(());
+    };
+    Err(FormatError::whole(format!(
+        "the array is in Fortran order and {has}, more than the {} MiB that are read as a whole: save it in C order \
+         (numpy.ascontiguousarray)",
+        limit >> 20
+    )))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::npy::header::Class;
     use crate::npy::write::to_bytes;
 
     /// Returns a file of f64 in Fortran order: 0, 1, 2, ...
@@ -137,6 +153,25 @@ mod tests {
         std::fs::OpenOptions::new().write(true).open(&path).unwrap().set_len(size - 8).unwrap();
         let message = Blocks::of_file(&path, file, size).err().unwrap().to_string();
         assert!(message.ends_with("but 16 bytes follow: is the file cut off?"), "{message}");
+    }
+
+    /// Narrow entries become numbers of 8 bytes, which take several times the size of the file.
+    #[test]
+    fn arrays_in_fortran_order_are_limited_by_their_numbers() {
+        let message = |size: usize, mib: u64| {
+            let item = Item { class: Class::Signed, size, big: false };
+            check_fortran(item, mib << 20).err().map(|error| error.to_string())
+        };
+        for (size, mib) in [(8, 1024), (4, 1024), (2, 512), (1, 256)] {
+            assert_eq!(message(size, mib), None, "{size}");
+            let refused = message(size, mib + 1).unwrap();
+            assert!(refused.starts_with("the array is in Fortran order and has "), "{refused}");
+        }
+        let refused = message(1, 257).unwrap();
+        assert!(
+            refused.contains("has 2056 MiB as float64, more than the 2048 MiB that are read"),
+            "{refused}"
+        );
     }
 
     #[test]

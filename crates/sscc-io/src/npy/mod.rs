@@ -9,6 +9,7 @@ mod blocks;
 mod header;
 mod write;
 
+pub(crate) use array::entry_count;
 pub use array::{Array, parse, parse_integers};
 pub(crate) use blocks::Blocks;
 pub use write::{NpyWriter, to_bytes, write_npy};

@@ -71,6 +71,31 @@ fn integers_of_all_sizes() {
 }
 
 #[test]
+fn entries_in_c_order_are_moved() {
+    let [c, fortran] = ["False", "True"]
+        .map(|order| parse(&file(1, &header("|i1", order, "(2, 3)"), &[0, 1, 2, 3, 0x80, 0x7f])).unwrap());
+    let place = c.data.as_ptr();
+    assert_eq!(c.to_c_order(), [0.0, 1.0, 2.0, 3.0, -128.0, 127.0]);
+    let moved = c.into_c_order();
+    assert_eq!((moved.as_ptr(), moved), (place, vec![0.0, 1.0, 2.0, 3.0, -128.0, 127.0]));
+    assert_eq!(fortran.to_c_order(), [0.0, 2.0, -128.0, 1.0, 3.0, 127.0]);
+    assert_eq!(fortran.into_c_order(), [0.0, 2.0, -128.0, 1.0, 3.0, 127.0]);
+}
+
+#[test]
+fn entries_are_counted_by_their_bytes() {
+    let count = |descr: &str, bytes: usize| {
+        entry_count(&file(1, &header(descr, "False", "(4000000000, 1000000000)"), &vec![0; bytes]))
+    };
+    for (descr, bytes, expected) in
+        [("|i1", 24, 24), ("<f2", 24, 12), (">u4", 24, 6), ("<f8", 24, 3), ("<f8", 7, 0)]
+    {
+        assert_eq!(count(descr, bytes), Some(expected), "{descr} {bytes}");
+    }
+    assert_eq!((count("<c8", 24), entry_count(b"x"), entry_count(b"")), (None, None, None));
+}
+
+#[test]
 fn half_floats_and_integers_are_floats() {
     let floats = |descr: &str, body: &[u8]| {
         parse(&file(1, &header(descr, "False", &format!("({},)", body.len() / 2)), body))

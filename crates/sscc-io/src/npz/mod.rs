@@ -15,13 +15,15 @@
 //!
 //! If a shape fits two forms, the first one in the table applies. Two names for one part are an error. Arrays are floats or
 //! integers, faces integers. An archive may be stored or deflated (`numpy.savez`, `numpy.savez_compressed`). Its
-//! recognised arrays may take up to 100 times the file's size plus 64 MiB, at most 4 GiB.
+//! recognised arrays may take up to 100 times the file's size plus 64 MiB, at most 4 GiB, and their numbers, 8 bytes each,
+//! up to 400 times the file's size plus 64 MiB, at most 8 GiB.
 //!
 //! [`write_npz`] writes arrays of any names.
 
 mod archive;
 mod deviations;
 mod names;
+mod number_limit;
 mod parts;
 mod write;
 

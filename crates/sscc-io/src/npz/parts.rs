@@ -8,6 +8,7 @@ use sscc::{Modes, TriMesh};
 use super::archive;
 use super::deviations::deviations;
 use super::names::Part;
+use super::number_limit::check_numbers;
 use crate::modes::array;
 use crate::npy::{self, Array};
 use crate::{FormatError, Message, Place, Setting};
@@ -43,6 +44,11 @@ impl Parts {
             let cause = format!("'{a}' and '{b}' are the same part of the model: remove one of them");
             return Err(FormatError::whole(cause));
         }
+        let counted = parts.values().filter_map(|(name, content)| {
+            // A malformed array has its error when it is decoded.
+            Some((name.as_str(), npy::entry_count(content)?))
+        });
+        check_numbers(bytes.len() as u64, counted)?;
         Ok(Self(parts))
     }
 
@@ -72,7 +78,7 @@ impl Parts {
                     return Err(FormatError::whole(cause));
                 }
             }
-            let values = array.to_c_order();
+            let values = array.into_c_order();
             Ok(values.as_chunks().0.iter().map(|xyz| DVec3::from_array(*xyz)).collect())
         })
     }
@@ -91,7 +97,7 @@ impl Parts {
     /// Returns the mesh of a complete model.
     pub fn mesh(&self) -> Result<TriMesh, FormatError> {
         let mean = self.mean()?.ok_or_else(|| Self::missing(Part::Mean, ""))?;
-        let faces = self.get(Part::Faces, |bytes| faces(&npy::parse_integers(bytes)?, mean.len()))?;
+        let faces = self.get(Part::Faces, |bytes| faces(npy::parse_integers(bytes)?, mean.len()))?;
         let advice = || ": pass it as " + Setting::Modes + " of a mesh file";
         let faces = faces.ok_or_else(|| Self::missing(Part::Faces, advice()))?;
         Ok(TriMesh::new(mean, faces)?)
@@ -102,11 +108,11 @@ impl Parts {
     pub fn weights(&self, rank: usize) -> Result<Option<Vec<f64>>, FormatError> {
         let weights = self.get(Part::Weights, |bytes| {
             let array = npy::parse(bytes)?;
-            match *array.shape() {
-                [n] if n == rank => Ok(Some(array.to_c_order())),
-                [n] => Err(FormatError::whole(format!("there are {n} numbers for {rank} modes"))),
-                _ => Ok(None),
+            let [length] = *array.shape() else { return Ok(None) };
+            if length != rank {
+                return Err(FormatError::whole(format!("there are {length} numbers for {rank} modes")));
             }
+            Ok(Some(array.into_c_order()))
         });
         Ok(weights?.flatten())
     }
@@ -125,20 +131,23 @@ impl Parts {
     }
 }
 
-fn faces(array: &Array<i64>, vertices: usize) -> Result<Vec<[u32; 3]>, FormatError> {
+fn faces(array: Array<i64>, vertices: usize) -> Result<Vec<[u32; 3]>, FormatError> {
     let [_, 3] = *array.shape() else {
         return Err(FormatError::whole(format!("shape {:?}: (N, 3) was expected", array.shape())));
     };
-    let corner = |(at, index): (usize, i64)| match u32::try_from(index) {
+    let corner = |face: usize, index: i64| match u32::try_from(index) {
         Ok(corner) if (corner as usize) < vertices => Ok(corner),
         _ => {
-            let face = at / 3;
             let cause =
                 format!("face {face} names vertex {index} (counted from 0), but there are {vertices}");
             Err(FormatError::new(Place::Whole, cause))
         }
     };
-    let corners: Vec<u32> =
-        array.to_c_order().into_iter().enumerate().map(corner).collect::<Result<_, _>>()?;
-    Ok(corners.as_chunks().0.to_vec())
+    let indices = array.into_c_order();
+    let triples = indices.as_chunks::<3>().0;
+    let mut faces = Vec::with_capacity(triples.len());
+    for (face, [a, b, c]) in triples.iter().enumerate() {
+        faces.push([corner(face, *a)?, corner(face, *b)?, corner(face, *c)?]);
+    }
+    Ok(faces)
 }

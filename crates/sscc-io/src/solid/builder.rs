@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use glam::DVec3;
 use sscc_solid::{NamedMaterial, SolidError, VolumeMesh, VolumeMeshParts};
 
+use super::listed_faces::ListedFaces;
 use super::volume_or_surface::VolumeOrSurface;
 use crate::polygons::Polygons;
 use crate::{FormatError, Place};
@@ -22,9 +23,11 @@ pub(super) struct Builder {
     cube_material: Vec<u32>,
     by_name: BTreeMap<String, u32>,
     faces: Polygons,
+    /// What `faces` does not show as triangles.
+    listed: ListedFaces,
     /// Triangles of second order: corners, then the middles of their edges.
     second_order: Vec<([u64; 6], Place)>,
-    /// Faces of a kind that is not read, and the cause. A solid does not need them.
+    /// The first face of a kind that is not read, as an error. A solid does not need it.
     unread_faces: Option<FormatError>,
     /// Largest index, from 0, and its place.
     largest: Option<(u64, Place)>,
@@ -39,6 +42,7 @@ impl Builder {
             cube_material: Vec::new(),
             by_name: BTreeMap::new(),
             faces: Polygons::new(first),
+            listed: ListedFaces::default(),
             second_order: Vec::new(),
             unread_faces: None,
             largest: None,
@@ -108,12 +112,15 @@ impl Builder {
     /// Adds a face of 3 or 4 corners, from 0.
     pub fn face<const N: usize>(&mut self, corners: [u64; N], place: Place) -> Result<(), FormatError> {
         self.check(&corners, place.clone())?;
-        self.faces.push(&corners, place)
+        self.polygon(&corners, place)
     }
 
     /// Adds a face of any number of corners, from 0.
     pub fn polygon(&mut self, corners: &[u64], place: Place) -> Result<(), FormatError> {
-        self.faces.push(corners, place)
+        let start = self.faces.triangle_count();
+        self.faces.push(corners, place)?;
+        self.listed.add_polygon(start..self.faces.triangle_count());
+        Ok(())
     }
 
     /// Adds a triangle of second order: corners from 0, then the middles of the edges 0 1, 1 2 and 2 0.
@@ -123,7 +130,7 @@ impl Builder {
         Ok(())
     }
 
-    /// Notes faces of a kind that is not read: an error if the file has no solid elements.
+    /// Notes faces of a kind that is not read: an error if the file has no solid elements, else a warning.
     pub fn unread_faces(&mut self, kind: &str, place: Place) {
         let cause = format!(
             "{kind} is not supported: only triangles and quadrilaterals of first order are, and triangles of 6 \
@@ -169,9 +176,14 @@ impl Builder {
             }
             _ => {}
         }
-        // The elements of a solid have their own edge midpoints, so its faces need corners only.
+        // Elements of second order have the middles of their edges, so their faces need corners alone. Those of no element need
+        // the middles that `listed` keeps.
         let is_surface = self.elements() == 0;
         for ([a, b, c, ab, bc, ca], place) in self.second_order {
+            if !is_surface {
+                let middles = [ab, bc, ca].map(|middle| middle as u32);
+                self.listed.add_middles(self.faces.triangle_count(), middles);
+            }
             let parts = [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]];
             let triangles = if is_surface { &parts[..] } else { &[[a, b, c]] };
             triangles.iter().try_for_each(|corners| self.faces.push(corners, place.clone()))?;
@@ -188,7 +200,10 @@ impl Builder {
         }
         self.parts.element_material.append(&mut self.cube_material);
         self.parts.surface = self.faces.into_fans(vertices)?;
-        Ok(VolumeOrSurface::Volume(VolumeMesh::new(self.parts)?))
+        if let Some(error) = &self.unread_faces {
+            self.listed.add_unread(error);
+        }
+        Ok(VolumeOrSurface::Volume { mesh: VolumeMesh::new(self.parts)?, faces: self.listed })
     }
 }
 

@@ -10,8 +10,11 @@
 
 mod builder;
 pub mod gmsh;
+mod listed_faces;
 pub mod medit;
 mod statements;
+#[cfg(test)]
+mod surface_tests;
 pub mod tetgen;
 pub mod vega;
 mod volume_or_surface;
@@ -25,6 +28,7 @@ use sscc_solid::VolumeMesh;
 use crate::IoError;
 use crate::file::{ending, read_whole, unsupported};
 
+pub use listed_faces::ListedFaces;
 pub use volume_or_surface::VolumeOrSurface;
 
 /// Endings that [`read_volume_mesh`] supports.
@@ -52,8 +56,8 @@ pub fn read_volume_or_surface(path: &Path) -> Result<VolumeOrSurface, IoError> {
         "mesh" => medit::parse_any,
         "msh" => gmsh::parse_any,
         "vtu" | "vtk" => vtk::parse_any,
-        "veg" => return vega::read(path).map(VolumeOrSurface::Volume),
-        "node" | "ele" => return tetgen::read(path).map(VolumeOrSurface::Volume),
+        "veg" => return vega::read(path).map(VolumeOrSurface::without_faces),
+        "node" | "ele" => return tetgen::read(path).map(VolumeOrSurface::without_faces),
         _ => return Err(unsupported(path, "volumetric mesh", SUPPORTED)),
     };
     parse(&read_whole(path)?).map_err(|error| error.of(path))

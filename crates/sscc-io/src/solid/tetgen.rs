@@ -1,5 +1,7 @@
 //! Reader for TetGen's pair of files: `.node` with the vertices, `.ele` with the tetrahedra.
 
+use std::ffi::OsString;
+use std::fs;
 use std::path::{Path, PathBuf};
 
 use glam::DVec3;
@@ -7,7 +9,8 @@ use sscc_solid::VolumeMesh;
 
 use super::builder::Builder;
 use super::statements::{corners, fields, index, position, statements, value};
-use crate::file::{ending, read_whole};
+use crate::error::shown_name;
+use crate::file::{ending, folder, read_whole};
 use crate::{FormatError, IoError, Place};
 
 /// Vertices of a `.node` file.
@@ -18,10 +21,10 @@ pub struct Nodes {
     first: u64,
 }
 
-/// Reads a `.node` and a `.ele` file of the same name beside each other; either may be given.
+/// Reads a `.node` and a `.ele` file of the same name beside each other, with endings in any case; either may be given.
 ///
 /// # Errors
-/// When one of them is missing, cannot be read or is malformed.
+/// When one of them is missing, cannot be read or is malformed; when the folder has two files that could be the other one.
 pub fn read(path: &Path) -> Result<VolumeMesh, IoError> {
     let (nodes, elements) = match ending(path).as_str() {
         "ele" => (beside(path, "node")?, path.to_owned()),
@@ -31,25 +34,75 @@ pub fn read(path: &Path) -> Result<VolumeMesh, IoError> {
     parse(&vertices, &read_whole(&elements)?).map_err(|error| error.of(&elements))
 }
 
-/// Returns the path of the same name with another ending, in capitals if the given one is.
+/// Returns the path of the same name with another ending, in capitals if the given one is; in any case if only such a file
+/// exists.
 pub(crate) fn companion(path: &Path, other: &str) -> PathBuf {
     let capitals =
         path.extension().is_some_and(|e| e.to_string_lossy().bytes().all(|b| b.is_ascii_uppercase()));
-    path.with_extension(if capitals { other.to_ascii_uppercase() } else { other.to_owned() })
+    let usual = path.with_extension(if capitals { other.to_ascii_uppercase() } else { other.to_owned() });
+    if usual.exists() {
+        return usual;
+    }
+    companions(path, other).into_iter().next().unwrap_or(usual)
 }
 
-/// Returns the [`companion`] of a file.
+/// Returns the other file of a pair, which need not exist; None for other files.
+pub(crate) fn other_of_pair(path: &Path) -> Option<PathBuf> {
+    match ending(path).as_str() {
+        "node" => Some(companion(path, "ele")),
+        "ele" => Some(companion(path, "node")),
+        _ => None,
+    }
+}
+
+/// Returns the file of the same name with another ending, in any case.
 ///
 /// # Errors
-/// When it does not exist.
+/// When there is none, or two of them.
 fn beside(path: &Path, other: &str) -> Result<PathBuf, IoError> {
-    let companion = companion(path, other);
     // If the given file is missing, its reader reports it.
-    if path.exists() && !companion.exists() {
-        let cause = format!("the .{other} file of the same name does not exist beside it");
-        return Err(IoError::request(path, cause));
+    if !path.exists() {
+        return Ok(companion(path, other));
     }
-    Ok(companion)
+    let refused = |cause: String| Err(IoError::request(path, cause));
+    match &companions(path, other)[..] {
+        [] => refused(format!("the .{other} file of the same name does not exist beside it")),
+        [one] => Ok(one.clone()),
+        [one, two, ..] => refused(format!(
+            "two .{other} files of the same name are beside it, {} and {}: rename or remove one",
+            shown_name(one),
+            shown_name(two)
+        )),
+    }
+}
+
+/// Returns the existing files of the same name with another ending, in any case. The folder is listed only where several
+/// seem to exist: a data set may have many pairs.
+fn companions(path: &Path, other: &str) -> Vec<PathBuf> {
+    let paths = spellings(other).map(|ending| path.with_extension(ending));
+    let mut found: Vec<PathBuf> = paths.filter(|path| path.exists()).collect();
+    if found.len() < 2 {
+        return found;
+    }
+    // Where the case of names does not count, all spellings are one file, whose name the folder lists once.
+    let Ok(entries) = fs::read_dir(folder(path)) else { return found };
+    let names: Vec<OsString> = entries.flatten().map(|entry| entry.file_name()).collect();
+    let is_listed = |path: &PathBuf| names.iter().any(|name| path.file_name() == Some(name.as_os_str()));
+    if found.iter().any(is_listed) {
+        found.retain(is_listed)
+    } else {
+        found.truncate(1)
+    }
+    found
+}
+
+/// Returns all spellings of a short ending in small letters and capitals.
+fn spellings(ending: &str) -> impl Iterator<Item = String> {
+    (0..1_u32 << ending.len()).map(move |capitals| {
+        let is_capital = |at: usize| (capitals >> at) & 1 == 1;
+        let letters = ending.chars().enumerate();
+        letters.map(|(at, c)| if is_capital(at) { c.to_ascii_uppercase() } else { c }).collect::<String>()
+    })
 }
 
 /// Parses a `.node` file: the number of vertices (then the dimension, the number of attributes, whether there are
@@ -261,5 +314,50 @@ mod tests {
         std::fs::write(path("B.ELE"), ELE).unwrap();
         assert_eq!(read(&path("B.ELE")).unwrap(), mesh);
         assert!(read(&path("c.ele")).unwrap_err().to_string().contains("not found"));
+    }
+
+    #[test]
+    fn endings_of_a_pair_may_be_in_any_case() {
+        for [node, ele] in
+            [["a.NODE", "a.ele"], ["A.Node", "A.ele"], ["a.node", "a.ELE"], ["b.nODe", "b.eLE"]]
+        {
+            let directory = tempfile::tempdir().unwrap();
+            let [node, ele] = [node, ele].map(|name| directory.path().join(name));
+            std::fs::write(&node, NODE).unwrap();
+            for (given, other) in [(&node, "ele"), (&ele, "node")] {
+                let missing = read(given).unwrap_err().to_string();
+                let cause = format!("the .{other} file of the same name does not exist beside it");
+                assert!(missing.ends_with(&cause) || missing.contains("not found"), "{missing}");
+            }
+            std::fs::write(&ele, ELE).unwrap();
+            assert_eq!(read(&node).unwrap(), both(NODE, ELE).unwrap(), "{}", node.display());
+            assert_eq!(read(&ele).unwrap(), both(NODE, ELE).unwrap(), "{}", ele.display());
+            // A data set lists a pair once, because it finds the vertices beside the elements.
+            assert!(companion(&ele, "node").is_file() && other_of_pair(&node).unwrap().is_file());
+        }
+    }
+
+    #[test]
+    fn two_files_that_could_be_the_other_one_are_refused() {
+        let directory = tempfile::tempdir().unwrap();
+        let path = |name: &str| directory.path().join(name);
+        for name in ["a.node", "a.NODE", "a.Ele"] {
+            std::fs::write(path(name), if name == "a.Ele" { ELE } else { NODE }).unwrap();
+        }
+        if std::fs::read_dir(directory.path()).unwrap().count() < 3 {
+            return; // the case of names does not count here
+        }
+        let message = read(&path("a.Ele")).unwrap_err().to_string();
+        let cause =
+            "a.Ele: two .node files of the same name are beside it, a.node and a.NODE: rename or remove one";
+        assert!(message.ends_with(cause), "{message}");
+        // If the vertices are named, they are known.
+        assert_eq!(read(&path("a.NODE")).unwrap().tets().len(), 2);
+        std::fs::write(path("a.ELE"), ELE).unwrap();
+        let message = read(&path("a.node")).unwrap_err().to_string();
+        assert!(
+            message.contains("two .ele files of the same name are beside it, a.Ele and a.ELE"),
+            "{message}"
+        );
     }
 }

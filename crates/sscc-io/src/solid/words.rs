@@ -1,7 +1,7 @@
 //! Words and bytes of formats in which line ends have no meaning.
 
 use crate::error::quoted;
-use crate::text::{Lines, count, decoded, line_end, number};
+use crate::text::{Lines, count, decoded, ends_line, is_line_end, number};
 use crate::{FormatError, Message, Place};
 
 /// Position in a file, from which words or bytes are read.
@@ -12,8 +12,6 @@ pub(super) struct Words<'a> {
     /// Line of the last word, from 1. Line ends within bytes are not counted.
     line: usize,
     comments: bool,
-    /// Last byte of a line end.
-    line_end: u8,
     /// Whether places are byte offsets (binary files).
     pub binary: bool,
 }
@@ -23,7 +21,7 @@ impl<'a> Words<'a> {
     pub fn new(bytes: &'a [u8], comments: bool) -> Result<Self, FormatError> {
         Lines::new(bytes)?; // an error for UTF-16
         let at = if bytes.starts_with(b"\xef\xbb\xbf") { 3 } else { 0 };
-        Ok(Self { bytes, at, line: 1, comments, line_end: line_end(bytes), binary: false })
+        Ok(Self { bytes, at, line: 1, comments, binary: false })
     }
 
     /// Returns the line of the last word; in binary files, the offset of the next byte.
@@ -40,8 +38,8 @@ impl<'a> Words<'a> {
         let mut comment = false;
         while let Some(byte) = self.bytes.get(self.at) {
             match byte {
-                end if *end == self.line_end => {
-                    self.line += 1;
+                end if is_line_end(*end) => {
+                    self.line += usize::from(ends_line(self.bytes, self.at));
                     comment = false;
                 }
                 b'#' if self.comments => comment = true,
@@ -115,13 +113,13 @@ impl<'a> Words<'a> {
     /// Returns the rest of the line, without its end.
     pub fn rest_of_line(&mut self) -> &'a [u8] {
         let rest = &self.bytes[self.at..];
-        let line = &rest[..rest.iter().position(|b| *b == self.line_end).unwrap_or(rest.len())];
+        let line = &rest[..rest.iter().position(|b| is_line_end(*b)).unwrap_or(rest.len())];
         self.at += line.len();
         if self.at < self.bytes.len() {
-            self.at += 1;
+            self.at += if ends_line(self.bytes, self.at) { 1 } else { 2 };
             self.line += 1;
         }
-        line.strip_suffix(b"\r").unwrap_or(line)
+        line
     }
 
     /// Skips a line, which may be empty; an error at the end of the file.

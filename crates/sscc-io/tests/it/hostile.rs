@@ -219,9 +219,10 @@ proptest! {
     fn random_words(
         words in prop::collection::vec(
             prop::sample::select(vec![
-                "v", "f", "fo", "surf", "OFF", "OFF3", "tristrips", "ply", "format", "ascii", "1.0", "element", "vertex", "face", "property", "list",
+                "v", "f", "F", "fo", "surf", "OFF", "OFF3", "tristrips", "ply", "format", "ascii", "1.0", "element", "vertex", "face", "property", "list",
                 "float", "int", "uchar", "x", "y", "z", "vertex_index", "end_header", "0", "1", "2", "3", "-1", "1/2",
-                "18446744073709551615", "1e999", "solid", "facet", "outer", "endloop", "endfacet", "endsolid", "nan", "\\", "#", "\n", "\n", "\n", "\r\n", "\u{e9}",
+                "18446744073709551615", "1e999", "solid", "facet", "outer", "endloop", "endfacet", "endsolid", "nan", "\\", "#", "loop",
+                "\n", "\n", "\n", "\r\n", "\r", "\u{a0}", "\u{feff}", "\u{e9}",
             ]),
             0..80,
         ),

@@ -13,15 +13,12 @@ use sscc_io::{Message, Setting, read_whole, write_whole};
 
 use super::history::{History, StateLayout};
 use crate::error::{InSystem, Result, SimError};
-use crate::files::remove_file;
-
-const LOG: &str = "states.log";
-const CHECKPOINT: &str = "checkpoint.bin";
+use crate::files::{CHECKPOINT, LOG, check_others, is_checkpoint, of_others, remove_file, unsealed};
 
 /// Size of the simulation's digest, with which both files begin (bytes).
 const DIGEST: usize = 32;
 
-/// Size of a hash (bytes). A checkpoint holds a hash of the states, and ends with a hash of all bytes before.
+/// Size of the hash of the states in a checkpoint (bytes).
 const HASH: usize = 32;
 
 /// The states of a simulation, on disk.
@@ -51,8 +48,8 @@ impl StateLog {
     /// checkpoint and empties the log. `digest` is the digest of the simulation.
     ///
     /// # Errors
-    /// When the folder cannot be written to, or holds another simulation; when another simulation is writing to the
-    /// log; when one of the files is damaged.
+    /// When the folder cannot be written to, holds another simulation, or has files that are not of a simulation; when another
+    /// simulation is writing to the log; when one of the files is damaged.
     pub(super) fn open(
         folder: &Path,
         digest: [u8; DIGEST],
@@ -60,6 +57,7 @@ impl StateLog {
         again: bool,
     ) -> Result<(Self, Option<Checkpoint>)> {
         let path = folder.join(LOG);
+        check_others(folder)?;
         let mut options = OpenOptions::new();
         let mut file =
             options.read(true).write(true).create(true).truncate(false).open(&path).system(&path)?;
@@ -73,13 +71,19 @@ impl StateLog {
             Err(TryLockError::Error(error)) => return Err(error).system(&path),
             Ok(()) => {}
         }
+        let mut start = Vec::new();
+        (&mut file).take(recognised_bytes() as u64).read_to_end(&mut start).system(&path)?;
+        let is_own = start.starts_with(&digest);
+        // An empty file has nothing to lose. A checkpoint belongs to a damaged log.
+        let is_known =
+            start.is_empty() || is_own || is_log(&start) || is_checkpoint(&folder.join(CHECKPOINT));
+        if !is_known {
+            return Err(of_others(&path));
+        }
         if again {
             remove_file(&folder.join(CHECKPOINT))?;
             file.set_len(0).system(&path)?;
-        }
-        let mut first = Vec::new();
-        (&mut file).take(DIGEST as u64).read_to_end(&mut first).system(&path)?;
-        if first.len() == DIGEST && first != digest {
+        } else if start.len() >= DIGEST && !is_own {
             let owner = "another scene, other models or another version of this program";
             return Err(of_another(&path, owner));
         }
@@ -87,7 +91,7 @@ impl StateLog {
         let checkpoint = log.checkpoint()?;
         match &checkpoint {
             None => {
-                log.cut(0)?;
+                log.file.set_len(0).system(&path)?;
                 log.file.rewind().system(&path)?;
                 log.file.write_all(&digest).system(&path)?;
             }
@@ -112,11 +116,8 @@ impl StateLog {
         }
         let bytes = read_whole(&path)?;
         let damaged = || damaged(&path);
-        let (rest, seal) = bytes.split_at_checked(bytes.len().saturating_sub(HASH)).ok_or_else(damaged)?;
-        if blake3::hash(rest).as_bytes() != seal {
-            return Err(damaged());
-        }
-        let (digest, rest) = rest.split_at_checked(DIGEST).ok_or_else(damaged)?;
+        let content = unsealed(&bytes).ok_or_else(damaged)?;
+        let (digest, rest) = content.split_at_checked(DIGEST).ok_or_else(damaged)?;
         if digest != self.digest {
             return Err(of_another(&path, "another simulation"));
         }
@@ -198,6 +199,27 @@ impl StateLog {
     }
 }
 
+/// Layout of the first values of every log: the record of the first step, and its first body without its q.
+fn first_layout() -> StateLayout {
+    StateLayout::new([0])
+}
+
+/// Returns the number of bytes by which [`is_log`] recognises a log.
+fn recognised_bytes() -> usize {
+    DIGEST + 8 * first_layout().width()
+}
+
+/// Whether a file begins like the log of any simulation: a digest, then a state, whose step took time and whose first body has a
+/// rotation of length 1. A log has no magic number, and other files do not have these numbers in these places.
+fn is_log(start: &[u8]) -> bool {
+    let Some(state) = start.get(DIGEST..recognised_bytes()) else { return false };
+    let numbers = state.as_chunks().0.iter().map(|x| f64::from_le_bytes(*x)).collect();
+    let history = History::new(first_layout(), numbers);
+    let (step, body) = (history.step(0), history.body(0, 0));
+    let has_time = step.wall > 0.0 && step.wall.is_finite();
+    has_time && body.position.is_finite() && body.orientation.is_normalized()
+}
+
 fn damaged(path: &Path) -> SimError {
     SimError::refused(path.display(), "this file is damaged; begin again with " + Setting::Restart)
 }
@@ -211,6 +233,9 @@ fn of_another(path: &Path, owner: &str) -> SimError {
 mod tests {
     use std::fs;
 
+    use glam::{DQuat, DVec3};
+
+    use super::super::history::{BodyRecord, StepRecord};
     use super::*;
 
     fn open(folder: &Path, digest: u8) -> Result<(StateLog, Option<Checkpoint>)> {
@@ -247,6 +272,61 @@ mod tests {
         log.write_checkpoint(&[]).unwrap();
         drop(log);
         assert_eq!(open(path, 1).unwrap().1.unwrap().states, 4);
+    }
+
+    /// Returns a first state as a simulation writes it.
+    fn first_state() -> Vec<f64> {
+        let body = BodyRecord {
+            pairs: 0,
+            position: DVec3::new(0.0, 0.0, 0.2),
+            orientation: DQuat::from_rotation_x(1.0),
+            q: &[0.5],
+        };
+        let mut numbers = Vec::new();
+        let record = StepRecord { wall: 1e-4, energy: 1.5, ..StepRecord::default() };
+        StateLayout::new([1]).push(record, [body], &mut numbers);
+        numbers
+    }
+
+    /// A simulation that was killed before its first checkpoint leaves its log alone.
+    #[test]
+    fn logs_of_other_simulations_are_recognised_without_a_checkpoint() {
+        let folder = tempfile::tempdir().unwrap();
+        let (mut log, _) = open(folder.path(), 1).unwrap();
+        log.append(&first_state()).unwrap();
+        drop(log);
+        let message = open(folder.path(), 2).err().unwrap().to_string();
+        assert!(message.contains("states.log: this file belongs to another scene"), "{message}");
+        let again = StateLog::open(folder.path(), [2; DIGEST], StateLayout::new([1]), true).unwrap();
+        assert!(again.1.is_none() && again.0.len() == 0);
+        drop(again);
+        // The same simulation also continues from a log without a state.
+        assert_eq!(fs::read(folder.path().join(LOG)).unwrap(), [2; DIGEST]);
+        assert!(open(folder.path(), 2).unwrap().1.is_none());
+    }
+
+    #[test]
+    fn a_log_of_another_program_is_refused_and_stays() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join(LOG);
+        let text = "2026-11-28 12:00:00 state 17: idle\n".repeat(20);
+        let ones: Vec<u8> = [1.0_f64; 60].iter().flat_map(|x| x.to_le_bytes()).collect();
+        let text = text.as_bytes();
+        let cases: [&[u8]; 5] = [text, &text[..1], &text[..DIGEST], &ones, &[0; 400]];
+        for bytes in cases {
+            fs::write(&path, bytes).unwrap();
+            for again in [false, true] {
+                let refused = StateLog::open(folder.path(), [1; DIGEST], StateLayout::new([1]), again);
+                let message = refused.err().unwrap().to_string();
+                let cause = "states.log: exists and is not of a simulation: choose another folder with out";
+                assert!(message.contains(cause), "{message}");
+                assert_eq!(fs::read(&path).unwrap(), bytes);
+            }
+        }
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
+        // An empty file has nothing to lose.
+        fs::write(&path, b"").unwrap();
+        assert!(open(folder.path(), 1).is_ok());
     }
 
     #[test]

@@ -43,8 +43,8 @@ pub struct RunOutcome {
 /// # Errors
 /// When a body or the world of the scene is invalid, for example because bodies penetrate each other, themselves or the
 /// ground at the start; when the states would take more than 4 GB; when the folder cannot be written to, has damaged
-/// files, or belongs to another simulation. Divergence and cancellation are not errors: [`RunOutcome::failure`] holds
-/// them, and the states are kept.
+/// files or files that are not of a simulation, or belongs to another simulation. Divergence and cancellation are not
+/// errors: [`RunOutcome::failure`] holds them, and the states are kept.
 pub fn run(
     scene: &Scene,
     prepared: &PreparedScene,

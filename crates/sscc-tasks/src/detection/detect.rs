@@ -27,12 +27,12 @@ use crate::{LeftOut, Stage, TaskError, Watch, available_threads};
 ///
 /// Frames from files are checked before the first answer. Memory holds the mesh (all meshes of an animation or a scene)
 /// and the other mesh, and for each thread their detectors and a few frames; meshes of a folder of frames are kept up to
-/// 1 GiB. Of several meshes at rest it holds a few for each thread.
+/// 1 GiB, and so are the transforms of a scene's nodes at all times. Of several meshes at rest it holds a few for each thread.
 ///
 /// # Errors
 /// When a request is contradictory; when `watch` cancels; when `take` fails. `take` receives the errors of a file: when
-/// it cannot be read or does not fit its mesh or the request; when the nodes of a scene have more than 2^25 triangles or
-/// vertices together, or more than 2^20 pairs of them collide at one time; when a mesh would be compared with itself; when a position is not finite or is beyond
+/// it cannot be read or does not fit its mesh or the request; when the nodes of a scene have more than 2^25 triangles (each
+/// node counts as at least 64) or vertices together, or more than 2^20 pairs of them collide at one time; when a mesh would be compared with itself; when a position is not finite or is beyond
 /// [`sscc::limits::LARGEST`]; when a query has more than [`sscc::Detector::MAX_PAIRS`] pairs and no limit.
 pub fn detect<E: From<TaskError>>(
     request: &Detection,

@@ -5,10 +5,11 @@ use std::collections::BTreeMap;
 use sscc::Pair;
 use sscc::parts::surroundings_between_meshes;
 
+use super::interval_tree::IntervalTree;
 use super::moving_mesh::MovingMesh;
-use super::node_boxes::{are_apart, boxes};
+use super::node_boxes::boxes;
 use super::request::Detection;
-use super::worker::Side;
+use super::worker::{Side, read_all};
 use crate::error::{At, Result};
 
 /// Ignored pairs of each two meshes, by their numbers; sorted.
@@ -22,15 +23,16 @@ impl IgnoredBetween {
         let Some(rings) = request.ignore_rest else { return Ok(Self::default()) };
         let mut found = BTreeMap::new();
         let mut sides: Vec<Side<'_, '_>> = meshes.iter().map(Side::new).collect();
-        sides.iter_mut().try_for_each(|side| side.read(0, false))?;
+        read_all(&mut sides, 0, false)?;
         let boxes = boxes(&sides);
+        let tree = IntervalTree::new(&boxes);
+        let mut near = Vec::new();
         for b in 1..sides.len() {
             sides[b].mesh.check_cancelled()?;
+            tree.find_before(b, 0.0, &mut near);
             let (before, from_b) = sides.split_at_mut(b);
-            for (a, x) in
-                before.iter_mut().enumerate().filter(|(a, _)| !are_apart(&boxes[*a], &boxes[b], 0.0))
-            {
-                let y = &mut from_b[0];
+            for &a in &near {
+                let (x, y) = (&mut before[a], &mut from_b[0]);
                 let place = || x.mesh.place(0);
                 let pairs = x.detector.against(&x.x_t0, &mut y.detector, &y.x_t0).at(place)?.to_vec();
                 if !pairs.is_empty() {

@@ -7,11 +7,12 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use glam::DVec3;
 use sscc::parts::detector_with_weld_classes;
 use sscc::{ContactFilter, Detector, TriMesh, TriangleGroups};
-use sscc_io::gltf::{AnimatedScene, MeshNode, SkinWeights, read_scene};
+use sscc_io::gltf::{MeshNode, SceneState, SkinWeights, read_scene};
 use sscc_io::{FormatError, FrameReader, IoError};
 
 use super::mesh_source::{MAX_WEIGHT_ERROR, MeshSource};
 use super::request::{AnimationMotion, Detection, MeshMotion};
+use super::scene_poses::ScenePoses;
 use super::scene_size::check_scene_size;
 use super::weld_classes::WeldClasses;
 use crate::LeftOut;
@@ -38,14 +39,12 @@ enum Motion {
     Animation(Evaluation),
 }
 
-/// An animation of a node at given times.
+/// A node of a scene at given times.
 struct Evaluation {
-    scene: Arc<AnimatedScene>,
-    /// Number of the animation; None means the scene as it is stored.
-    animation: Option<usize>,
+    /// The poses of the scene, which all nodes share.
+    poses: Arc<ScenePoses>,
     node: usize,
     weights: SkinWeights,
-    times: Arc<[f64]>,
     /// Whether the warning that the node is flattened was sent.
     is_warned: AtomicBool,
 }
@@ -130,8 +129,8 @@ impl<'w> MovingMesh<'w> {
     /// Loads the nodes of an animation, or of a scene at rest.
     ///
     /// # Errors
-    /// When the file cannot be read, or does not fit the request; when its nodes have too many triangles or vertices; when
-    /// `watch` cancels.
+    /// When the file cannot be read, or does not fit the request; when its nodes are too many, or have too many triangles or
+    /// vertices; when `watch` cancels.
     pub fn animated(
         file: &Path,
         animated: &AnimationMotion,
@@ -154,10 +153,10 @@ impl<'w> MovingMesh<'w> {
             ));
         }
         let times = animated.times.of(info.map_or(0.0, |(_, info)| info.last_time));
-        let times: Arc<[f64]> =
-            times.map_err(|cause| crate::TaskError::refused(file.display(), cause))?.into();
+        let times = times.map_err(|cause| crate::TaskError::refused(file.display(), cause))?;
         let nodes = scene.find_mesh_nodes(animated.node.as_deref()).map_err(|error| in_file(error, file))?;
         check_scene_size(file, nodes, request)?;
+        let poses = Arc::new(ScenePoses::new(Arc::clone(&scene), animation, times, nodes.len()));
         let groups = request.groups.of_nodes(file, nodes, compares_nodes(request))?;
         let mesh = |(node, groups): (&MeshNode, Option<TriangleGroups>)| {
             check_cancelled(watch)?;
@@ -184,11 +183,9 @@ impl<'w> MovingMesh<'w> {
                 left_out = left_out.and_between_files();
             }
             let motion = Motion::Animation(Evaluation {
-                scene: Arc::clone(&scene),
-                animation,
+                poses: Arc::clone(&poses),
                 node: node.node(),
                 weights,
-                times: Arc::clone(&times),
                 is_warned: AtomicBool::new(false),
             });
             let (node, name) = (Some(node.node()), node.name().map(str::to_owned));
@@ -207,7 +204,7 @@ impl<'w> MovingMesh<'w> {
         match &self.motion {
             Motion::Rest => 1,
             Motion::Frames(reader) => reader.len(),
-            Motion::Animation(evaluation) => evaluation.times.len(),
+            Motion::Animation(evaluation) => evaluation.poses.times().len(),
         }
     }
 
@@ -215,7 +212,7 @@ impl<'w> MovingMesh<'w> {
     pub fn times(&self) -> Option<&[f64]> {
         match &self.motion {
             Motion::Frames(reader) => reader.times(),
-            Motion::Animation(evaluation) if evaluation.animation.is_some() => Some(&evaluation.times),
+            Motion::Animation(evaluation) if evaluation.poses.is_animated() => Some(evaluation.poses.times()),
             _ => None,
         }
     }
@@ -237,9 +234,22 @@ impl<'w> MovingMesh<'w> {
         }
     }
 
+    /// Returns the state of the scene at a frame, for [`MovingMesh::positions`] of all meshes of the file; None if the mesh does
+    /// not move with a scene.
+    pub fn scene_state(&self, frame: usize) -> Result<Option<Arc<SceneState>>> {
+        let Motion::Animation(evaluation) = &self.motion else { return Ok(None) };
+        let state = evaluation.poses.state(frame.min(self.frames() - 1));
+        Ok(Some(state.map_err(|error| in_file(error, &self.file))?))
+    }
+
     /// Replaces `positions` by the positions at a frame. Beyond the last frame, these are the positions at the last
-    /// one.
-    pub fn positions(&self, frame: usize, positions: &mut Vec<DVec3>) -> Result<()> {
+    /// one. `state` is the state of the scene at the frame, if it is known.
+    pub fn positions(
+        &self,
+        frame: usize,
+        state: Option<&Arc<SceneState>>,
+        positions: &mut Vec<DVec3>,
+    ) -> Result<()> {
         let frame = frame.min(self.frames() - 1);
         match &self.motion {
             Motion::Rest => {
@@ -248,8 +258,8 @@ impl<'w> MovingMesh<'w> {
             }
             Motion::Frames(reader) => reader.read(frame, positions)?,
             Motion::Animation(evaluation) => {
-                let is_flat =
-                    evaluation.positions(frame, positions).map_err(|error| in_file(error, &self.file))?;
+                let is_flat = evaluation.positions(frame, state, positions);
+                let is_flat = is_flat.map_err(|error| in_file(error, &self.file))?;
                 // The first such frame depends on the threads, so the warning names no frame.
                 if is_flat && !evaluation.is_warned.swap(true, Ordering::Relaxed) {
                     self.watch.warn(&format!(
@@ -265,9 +275,18 @@ impl<'w> MovingMesh<'w> {
 }
 
 impl Evaluation {
-    /// Replaces `positions` by the positions at a frame. Returns whether a scale of 0 flattens triangles.
-    fn positions(&self, frame: usize, positions: &mut Vec<DVec3>) -> Result<bool, FormatError> {
-        let pose = self.scene.pose(self.animation, self.times[frame])?;
+    /// Replaces `positions` by the positions at a frame. Returns whether a scale of 0 flattens triangles. `state` is the state of
+    /// the scene at the frame, if it is known.
+    fn positions(
+        &self,
+        frame: usize,
+        state: Option<&Arc<SceneState>>,
+        positions: &mut Vec<DVec3>,
+    ) -> Result<bool, FormatError> {
+        let pose = match state {
+            Some(state) => self.poses.pose_of(Arc::clone(state)),
+            None => self.poses.pose_of_node(self.node, frame)?,
+        };
         pose.positions(self.node, self.weights, positions)?;
         Ok(pose.is_flattened(self.node))
     }

@@ -6,11 +6,12 @@ use glam::DVec3;
 use sscc_io::Message;
 
 use super::ignored_between::IgnoredBetween;
+use super::interval_tree::IntervalTree;
 use super::moving_mesh::MovingMesh;
-use super::node_boxes::{are_apart, boxes};
+use super::node_boxes::boxes;
 use super::request::Detection;
 use super::scene_size::way_out;
-use super::worker::{QueryResult, Side, query};
+use super::worker::{QueryResult, Side, query, read_all};
 use crate::TaskError;
 use crate::error::{At, Result};
 use crate::text::grouped;
@@ -19,7 +20,7 @@ use crate::text::grouped;
 /// of triangles each. A few frames for each thread wait until those before them are written.
 const MAX_COLLIDING: usize = 1 << 20;
 
-/// A detector for each mesh, and its positions at one frame. Positions are evaluated once for all pairs.
+/// A detector for each mesh, and its positions at one frame. The scene and all positions are evaluated once for all pairs.
 pub(super) struct NodePairs<'m, 'w> {
     request: &'m Detection,
     sides: Vec<Side<'m, 'w>>,
@@ -38,18 +39,17 @@ impl<'m, 'w> NodePairs<'m, 'w> {
     /// Answers the queries of all pairs of meshes at a frame. Returns the answers with colliding (or near) pairs, in order.
     pub fn answer(&mut self, frame: usize) -> Result<Vec<([usize; 2], QueryResult)>> {
         let Self { request, sides, ignored } = self;
-        sides.iter_mut().try_for_each(|side| side.read(frame, request.is_continuous))?;
+        read_all(sides, frame, request.is_continuous)?;
         let boxes = boxes(sides);
+        let tree = IntervalTree::new(&boxes);
         let reach = request.clearance.map_or(0.0, |clearance| clearance.distance());
         let mut positions: Vec<Option<Arc<[Vec<DVec3>; 2]>>> = vec![None; sides.len()];
-        let mut found = Vec::new();
+        let (mut near, mut found) = (Vec::new(), Vec::new());
         for b in 1..sides.len() {
             sides[b].mesh.check_cancelled()?;
+            tree.find_before(b, reach, &mut near);
             let (before, from_b) = sides.split_at_mut(b);
-            for a in 0..b {
-                if are_apart(&boxes[a], &boxes[b], reach) {
-                    continue;
-                }
+            for &a in &near {
                 let side = &mut before[a];
                 let (mesh, other) = (side.mesh, &mut from_b[0]);
                 let ignored = ignored.of([a, b]);

@@ -14,20 +14,47 @@ use crate::text::{counted, grouped};
 /// the nodes take a few GiB for each thread; a small file can show a mesh by any number of nodes. A mesh alone is bounded by its file.
 const MAX_SIZE: u64 = 1 << 25;
 
-/// Refuses nodes that have too many triangles or vertices together.
+/// A node counts as at least this number of triangles: its mesh, its detector, which has buckets of this size, and its buffers
+/// take some kB, however few triangles it has.
+const MIN_TRIANGLES: u64 = 64;
+
+/// Refuses nodes that have too many triangles or vertices together, or are too many.
 pub(super) fn check_scene_size(file: &Path, nodes: &[MeshNode], request: &Detection) -> Result<()> {
-    let triangles: u64 = nodes.iter().map(|node| node.faces().len() as u64).sum();
-    let vertices: u64 = nodes.iter().map(|node| node.rest_positions().len() as u64).sum();
-    if nodes.len() == 1 || triangles.max(vertices) <= MAX_SIZE {
-        return Ok(());
+    let sizes = nodes.iter().map(|node| [node.faces().len() as u64, node.rest_positions().len() as u64]);
+    match reason_against(sizes) {
+        Some(cause) => {
+            Err(TaskError::refused(file.display(), Message::from(cause + ": ") + way_out(request)))
+        }
+        None => Ok(()),
     }
-    let [triangles, vertices, limit] = [triangles, vertices, MAX_SIZE].map(grouped);
-    let nodes = counted(nodes.len() as u64, "node");
-    let cause = format!(
+}
+
+/// Returns why nodes with these numbers of triangles and vertices cannot be checked together; None if they can.
+fn reason_against(nodes: impl Iterator<Item = [u64; 2]>) -> Option<String> {
+    let [mut count, mut triangles, mut vertices, mut counted_triangles] = [0_u64; 4];
+    for [of_node, vertices_of_node] in nodes {
+        count += 1;
+        triangles += of_node;
+        vertices += vertices_of_node;
+        counted_triangles += of_node.max(MIN_TRIANGLES);
+    }
+    if count <= 1 || counted_triangles.max(vertices) <= MAX_SIZE {
+        return None;
+    }
+    let limit = grouped(MAX_SIZE);
+    let nodes = counted(count, "node");
+    if triangles.max(vertices) <= MAX_SIZE {
+        let [triangles, counted_triangles] = [triangles, counted_triangles].map(grouped);
+        return Some(format!(
+            "its {nodes} have {triangles} triangles in all and count as {counted_triangles}, each node as at least \
+             {MIN_TRIANGLES}, but at most {limit} are checked together"
+        ));
+    }
+    let [triangles, vertices] = [triangles, vertices].map(grouped);
+    Some(format!(
         "its {nodes} have {triangles} triangles and {vertices} vertices in all, but at most {limit} of each are checked \
-         together: "
-    );
-    Err(TaskError::refused(file.display(), Message::from(cause) + way_out(request)))
+         together"
+    ))
 }
 
 /// Returns how to ask for a single node.
@@ -44,6 +71,26 @@ mod tests {
 
     use super::*;
     use crate::detection::{AnimationMotion, Times, detect};
+
+    /// 2^19 nodes of one triangle are allowed, and not one more.
+    #[test]
+    fn nodes_count_as_64_triangles_at_least() {
+        let nodes = |count: usize, size: [u64; 2]| std::iter::repeat_n(size, count);
+        assert_eq!(reason_against(nodes(524_288, [1, 3])), None);
+        assert_eq!(
+            reason_against(nodes(524_289, [1, 3])).unwrap(),
+            "its 524,289 nodes have 524,289 triangles in all and count as 33,554,496, each node as at least 64, but at most \
+             33,554,432 are checked together"
+        );
+        let mixed = nodes(1000, [1, 3]);
+        assert_eq!(reason_against(mixed.chain([[33_490_432, 9]])), None);
+        let mixed = nodes(1000, [1, 3]);
+        assert!(reason_against(mixed.chain([[33_490_433, 9]])).is_some());
+        // A single node is bounded by its file.
+        assert_eq!(reason_against(nodes(1, [1 << 30, 1 << 30])), None);
+        assert!(reason_against(nodes(2, [1, 1 << 25])).unwrap().contains(" 67,108,864 vertices in all"));
+        assert_eq!(reason_against(nodes(0, [0, 0])), None);
+    }
 
     #[test]
     fn nodes_of_a_small_file_have_a_maximum_size() {

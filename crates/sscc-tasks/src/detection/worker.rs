@@ -6,6 +6,7 @@ use std::time::Instant;
 use glam::DVec3;
 use sscc::parts::{BodyPenetration, Surface, body_penetration};
 use sscc::{Clearance, Detector, Enclosed, Impact, Pair, Statistics};
+use sscc_io::gltf::SceneState;
 
 use super::answer::earliest_impacts;
 use super::contacts::{ContactOptions, Contacts};
@@ -219,14 +220,34 @@ impl<'m, 'w> Side<'m, 'w> {
         [self.x_t0.clone(), self.x_t1.clone()]
     }
 
-    /// Reads the positions at a frame; for a motion, also at the next frame. Each node of an animation evaluates all
-    /// transforms, so cancellation is checked.
-    pub fn read(&mut self, frame: usize, is_continuous: bool) -> Result<()> {
+    /// Reads the positions at a frame; for a motion, also at the next frame.
+    fn read(&mut self, frame: usize, is_continuous: bool) -> Result<()> {
+        self.read_in([None, None], frame, is_continuous)
+    }
+
+    /// As [`Side::read`], where the states of the scene at the frame and at the next one may be known. Evaluating a scene and
+    /// many positions takes long, so cancellation is checked.
+    fn read_in(
+        &mut self,
+        [start, end]: [Option<&Arc<SceneState>>; 2],
+        frame: usize,
+        is_continuous: bool,
+    ) -> Result<()> {
         self.mesh.check_cancelled()?;
-        self.mesh.positions(frame, &mut self.x_t0)?;
+        self.mesh.positions(frame, start, &mut self.x_t0)?;
         if is_continuous {
-            self.mesh.positions(frame + 1, &mut self.x_t1)?;
+            self.mesh.positions(frame + 1, end, &mut self.x_t1)?;
         }
         Ok(())
     }
+}
+
+/// Reads the positions of all meshes of a file at a frame; for a motion, also at the next frame. The scene is evaluated once for
+/// all of them.
+pub(super) fn read_all(sides: &mut [Side<'_, '_>], frame: usize, is_continuous: bool) -> Result<()> {
+    let Some(first) = sides.first().map(|side| side.mesh) else { return Ok(()) };
+    let start = first.scene_state(frame)?;
+    let end = if is_continuous { first.scene_state(frame + 1)? } else { None };
+    let states = [start.as_ref(), end.as_ref()];
+    sides.iter_mut().try_for_each(|side| side.read_in(states, frame, is_continuous))
 }

@@ -148,7 +148,8 @@ impl SolidSource {
         }
         let file = match read_volume_or_surface(path)? {
             VolumeOrSurface::Surface { mesh, warnings } => return surface((mesh, warnings)),
-            VolumeOrSurface::Volume(file) => file,
+            // Faces beside the elements have no elasticity.
+            VolumeOrSurface::Volume { mesh, .. } => mesh,
         };
         if resolution.is_some() {
             let place = Setting::Resolution + " is for surfaces";

@@ -137,7 +137,10 @@ fn is_own_frames(path: &Path) -> bool {
 /// Refuses flags for models, and flags that have no effect together.
 fn check_flags(args: &Check) -> Result<()> {
     let (options, motion) = (&args.options, &args.motion);
-    let is_model = |path: &&PathBuf| path.extension().is_some_and(|e| e == "safetensors" || e == "npz");
+    let is_model = |path: &&PathBuf| {
+        path.extension()
+            .is_some_and(|e| ["safetensors", "npz"].iter().any(|known| e.eq_ignore_ascii_case(known)))
+    };
     let model = iter::once(&args.model.path).chain(&args.meshes).find(is_model);
     let as_mesh = motion.frames.is_some() || motion.against.is_some();
     if let Some(path) = args.model.modes.is_some().then_some(&args.model.path).or(model.filter(|_| !as_mesh))

@@ -62,7 +62,7 @@ impl Report {
                 return Ok(Self::Model(Model::of(&model, info).with_weights(mode_weights)));
             }
             _ if is_solid(path) => match read_volume_or_surface(path)? {
-                VolumeOrSurface::Volume(file) => return Ok(Self::Solid(Solid::of(&file))),
+                VolumeOrSurface::Volume { mesh, .. } => return Ok(Self::Solid(Solid::of(&mesh))),
                 VolumeOrSurface::Surface { mesh, warnings } => {
                     return Ok(Self::surface(path, &mesh, &warnings));
                 }

@@ -53,11 +53,21 @@ pub(super) enum Property {
 }
 
 /// State of the nodes that an animation moves.
+#[derive(Default)]
 pub(super) struct NodeStates {
     /// Local transforms.
     pub transforms: Vec<(usize, DMat4)>,
     /// Weights of morph targets.
     pub weights: BTreeMap<usize, Vec<f64>>,
+}
+
+/// State that an animation gives to one node.
+#[derive(Default)]
+pub(super) struct NodeState {
+    /// Local transform; None if the animation does not move the node.
+    pub transform: Option<DMat4>,
+    /// Weights of morph targets; None if the animation does not change them.
+    pub weights: Option<Vec<f64>>,
 }
 
 impl Animation {
@@ -73,27 +83,44 @@ impl Animation {
 
     /// Returns the nodes that the animation moves, at a time (s).
     pub fn moved_at(&self, time: f64, nodes: &Nodes) -> Result<NodeStates, FormatError> {
-        let mut moved = NodeStates { transforms: Vec::new(), weights: BTreeMap::new() };
+        let mut moved = NodeStates::default();
         for channels in self.channels.chunk_by(|a, b| a.node == b.node) {
             let node = channels[0].node;
-            let mut parts = None;
-            for Channel { property, sampler, .. } in channels {
-                if *property == Property::Weights {
-                    moved.weights.insert(node, sampler.values_at(time));
-                    continue;
-                }
-                let parts = match &mut parts {
-                    Some(parts) => parts,
-                    None => parts.insert(nodes.parts(node)?),
-                };
-                match property {
-                    Property::Translation => parts.translation = DVec3::from_slice(&sampler.values_at(time)),
-                    Property::Scale => parts.scale = DVec3::from_slice(&sampler.values_at(time)),
-                    _ => parts.rotation = sampler.rotation_at(time),
-                }
-            }
-            moved.transforms.extend(parts.map(|parts| (node, parts.matrix())));
+            let NodeState { transform, weights } = NodeState::of(node, channels, time, nodes)?;
+            moved.transforms.extend(transform.map(|transform| (node, transform)));
+            moved.weights.extend(weights.map(|weights| (node, weights)));
         }
         Ok(moved)
+    }
+
+    /// Returns the state of one node at a time (s), as in [`Animation::moved_at`].
+    pub fn node_at(&self, node: usize, time: f64, nodes: &Nodes) -> Result<NodeState, FormatError> {
+        let start = self.channels.partition_point(|channel| channel.node < node);
+        let end = self.channels.partition_point(|channel| channel.node <= node);
+        NodeState::of(node, &self.channels[start..end], time, nodes)
+    }
+}
+
+impl NodeState {
+    /// Returns the state of a node that these channels give to it.
+    fn of(node: usize, channels: &[Channel], time: f64, nodes: &Nodes) -> Result<Self, FormatError> {
+        let mut weights = None;
+        let mut parts = None;
+        for Channel { property, sampler, .. } in channels {
+            if *property == Property::Weights {
+                weights = Some(sampler.values_at(time));
+                continue;
+            }
+            let parts = match &mut parts {
+                Some(parts) => parts,
+                None => parts.insert(nodes.parts(node)?),
+            };
+            match property {
+                Property::Translation => parts.translation = DVec3::from_slice(&sampler.values_at(time)),
+                Property::Scale => parts.scale = DVec3::from_slice(&sampler.values_at(time)),
+                _ => parts.rotation = sampler.rotation_at(time),
+            }
+        }
+        Ok(Self { transform: parts.map(|parts| parts.matrix()), weights })
     }
 }

@@ -33,7 +33,7 @@ pub use contents::{
 pub use mesh_node::MeshNode;
 pub use place::SkinWeights;
 pub use placed_mesh::{PlacedMesh, parse_placed_mesh, read_model_placement, read_placed_mesh};
-pub use pose::ScenePose;
+pub use pose::{ScenePose, SceneState};
 pub use read::{parse_scene, read_scene};
 
 #[cfg(test)]

@@ -1,5 +1,7 @@
 //! The node hierarchy.
 
+use std::collections::BTreeMap;
+
 use glam::DMat4;
 
 use super::json;
@@ -81,6 +83,28 @@ impl Nodes {
         }
         world
     }
+
+    /// Adds the world transforms of a node and of its ancestors to the known ones, bit for bit as
+    /// [`Nodes::world_transforms`] computes them. `moved` returns the local transform that an animation gives to a node.
+    pub fn add_world_transforms(
+        &self,
+        node: usize,
+        moved: impl Fn(usize) -> Result<Option<DMat4>, FormatError>,
+        world: &mut BTreeMap<usize, DMat4>,
+    ) -> Result<(), FormatError> {
+        let (mut unknown, mut next) = (Vec::new(), Some(node));
+        while let Some(node) = next.filter(|node| !world.contains_key(node)) {
+            unknown.push(node);
+            next = self.parents[node].map(|parent| parent as usize);
+        }
+        for node in unknown.into_iter().rev() {
+            let local = moved(node)?.unwrap_or_else(|| self.transforms[node].matrix());
+            let parent = self.parents[node].and_then(|parent| world.get(&(parent as usize)));
+            let own = parent.map_or(local, |parent| *parent * local);
+            world.insert(node, own);
+        }
+        Ok(())
+    }
 }
 
 #[cfg(test)]
@@ -105,6 +129,34 @@ mod tests {
         assert_eq!(at(&[]), DVec3::new(2.0, 2.0, 5.0));
         assert_eq!(at(&[(2, DMat4::IDENTITY), (1, DMat4::ZERO)]), DVec3::ZERO);
         assert_eq!(nodes.len(), 3);
+    }
+
+    /// A rotation that changes every bit, so that another order of products would show.
+    #[test]
+    fn single_nodes_have_the_transforms_that_all_nodes_have_together() {
+        let node = |number: usize| {
+            let child = number + 2;
+            let children = if child < 40 { format!("[{child}]") } else { "[]".into() };
+            format!(
+                r#"{{"children":{children},"rotation":[0.1,0.{number},0.3,1],"scale":[1.1,0.9,1],"translation":[0.1,{number},7]}}"#
+            )
+        };
+        let json: Vec<String> = (0..40).map(node).collect();
+        let nodes = nodes(&format!("[{}]", json.join(","))).ok().unwrap();
+        let turned = DMat4::from_rotation_x(0.7);
+        for moved in [&[][..], &[(4, turned)], &[(0, turned), (13, turned), (38, turned)]] {
+            let all = nodes.world_transforms(moved);
+            let local = |node: usize| Ok(moved.iter().find(|(other, _)| *other == node).map(|(_, m)| *m));
+            let mut together = BTreeMap::new();
+            for node in (0..40).rev() {
+                let mut alone = BTreeMap::new();
+                nodes.add_world_transforms(node, local, &mut alone).unwrap();
+                nodes.add_world_transforms(node, local, &mut together).unwrap();
+                assert_eq!((alone[&node], together[&node]), (all[node], all[node]));
+                assert_eq!(alone.len(), 1 + node / 2);
+            }
+            assert_eq!(together.into_values().collect::<Vec<_>>(), all);
+        }
     }
 
     #[test]

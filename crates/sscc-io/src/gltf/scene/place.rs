@@ -26,13 +26,13 @@ pub(super) enum Place<'a> {
 }
 
 impl<'a> Place<'a> {
-    /// Returns the place of a mesh at a node, for world transforms of all nodes. The transform of a node with a skin has
-    /// no effect, by the standard.
-    pub fn new(node: usize, skin: Option<(&Skin, &'a Influences)>, world: &[DMat4]) -> Self {
+    /// Returns the place of a mesh at a node, for world transforms of nodes. The transform of a node with a skin has no
+    /// effect, by the standard.
+    pub fn new(node: usize, skin: Option<(&Skin, &'a Influences)>, world: impl Fn(usize) -> DMat4) -> Self {
         match skin {
-            None => Self::Rigid(world[node]),
+            None => Self::Rigid(world(node)),
             Some((skin, influences)) => {
-                let joints = influences.joints.iter().map(|joint| skin.joint_transform(*joint, world));
+                let joints = influences.joints.iter().map(|joint| skin.joint_transform(*joint, &world));
                 Self::Skinned(influences, joints.collect())
             }
         }

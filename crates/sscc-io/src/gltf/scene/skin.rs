@@ -48,9 +48,14 @@ impl Skin {
         self.joints.len()
     }
 
-    /// Returns the transform of a joint from the space of the mesh to the world, for world transforms of all nodes.
-    pub fn joint_transform(&self, joint: u32, world: &[DMat4]) -> DMat4 {
-        let of_node = world[self.joints[joint as usize] as usize];
+    /// Returns the number of the node of a joint.
+    pub fn node(&self, joint: u32) -> usize {
+        self.joints[joint as usize] as usize
+    }
+
+    /// Returns the transform of a joint from the space of the mesh to the world, for world transforms of nodes.
+    pub fn joint_transform(&self, joint: u32, world: impl Fn(usize) -> DMat4) -> DMat4 {
+        let of_node = world(self.node(joint));
         self.inverse_bind.get(joint as usize).map_or(of_node, |inverse| of_node * *inverse)
     }
 }

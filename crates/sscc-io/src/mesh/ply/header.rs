@@ -53,8 +53,6 @@ pub(super) struct Header {
     pub lines: usize,
     /// Offset of the first byte after the header.
     pub body: usize,
-    /// Last byte of a line end.
-    pub line_end: u8,
 }
 
 /// Maximum number of elements, and of properties of an element. Each name is compared with all others.
@@ -103,13 +101,14 @@ impl Header {
     pub fn parse(bytes: &[u8]) -> Result<Self, FormatError> {
         let mut encoding = None;
         let mut elements: Vec<Element> = Vec::new();
-        let line_end = first_line_end(bytes);
-        for (line, text) in Lines::with_end(bytes, line_end)? {
+        let mut first_end: &[u8] = &[];
+        for (line, text) in Lines::new(bytes)? {
             let refused = |cause: String| Err(FormatError::line(line, cause));
             if line == 1 {
                 if text.trim_ascii_end() != b"ply" {
                     return refused("a PLY file begins with 'ply'".into());
                 }
+                first_end = line_end(after(bytes, text));
                 continue;
             }
             if text.starts_with(b"comment") || text.starts_with(b"obj_info") {
@@ -117,6 +116,7 @@ impl Header {
             }
             let words: Vec<_> = decoded(text, line)?.split_ascii_whitespace().take(6).collect();
             match words[..] {
+                [] => {}
                 ["format", name, "1.0"] if encoding.is_none() => encoding = Some(encoding_of(name, line)?),
                 ["element", name, rows] => {
                     if elements.iter().any(|e| e.name == name) {
@@ -145,13 +145,12 @@ impl Header {
                     let Some(encoding) = encoding else {
                         return refused("the header has no line 'format'".into());
                     };
-                    // The line is a part of `bytes`, and ends with its line end or with the file.
-                    let end = text.as_ptr_range().end as usize - bytes.as_ptr() as usize;
-                    let body = bytes[end..]
-                        .iter()
-                        .position(|b| *b == line_end)
-                        .map_or(bytes.len(), |at| end + at + 1);
-                    return Ok(Self { encoding, elements, lines: line, body, line_end });
+                    let rest = after(bytes, text);
+                    // The rows of a binary file may begin with the byte LF, after a CR that ends all lines.
+                    let is_cr = encoding != Encoding::Text && first_end == b"\r";
+                    let end = if is_cr { rest.len().min(1) } else { line_end(rest).len() };
+                    let body = bytes.len() - rest.len() + end;
+                    return Ok(Self { encoding, elements, lines: line, body });
                 }
                 _ => {
                     return refused(format!(
@@ -165,14 +164,16 @@ impl Header {
     }
 }
 
-/// Returns the last byte of the first line end: CR if no LF follows it, else LF. The rows of binary files may contain any
-/// bytes.
-fn first_line_end(bytes: &[u8]) -> u8 {
-    let cr = bytes.iter().position(|b| matches!(b, b'\r' | b'\n')).filter(|at| bytes[*at] == b'\r');
-    match cr {
-        Some(at) if bytes.get(at + 1) != Some(&b'\n') => b'\r',
-        _ => b'\n',
-    }
+/// Returns the bytes after a line, from its line end on. The line is a part of the bytes.
+fn after<'a>(bytes: &'a [u8], line: &[u8]) -> &'a [u8] {
+    let end = line.as_ptr_range().end as usize - bytes.as_ptr() as usize;
+    bytes.get(end..).unwrap_or_default()
+}
+
+/// Returns the line end at the beginning of these bytes; nothing at the end of the file.
+fn line_end(rest: &[u8]) -> &[u8] {
+    let size = if rest.starts_with(b"\r\n") { 2 } else { 1 };
+    rest.get(..size).unwrap_or_default()
 }
 
 fn encoding_of(name: &str, line: usize) -> Result<Encoding, FormatError> {

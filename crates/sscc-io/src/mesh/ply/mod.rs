@@ -121,7 +121,10 @@ fn skip(element: &Element, values: &mut Values<'_>) -> Result<(), FormatError> {
     }
     check_without_faces(element)?;
     let none = element.properties.len();
-    (0..element.count).try_for_each(|_| read_numbers(element, values, none, |_| Ok(())))
+    (0..element.count).try_for_each(|_| {
+        values.begin_row();
+        read_numbers(element, values, none, |_| Ok(()))
+    })
 }
 
 /// Returns an error if an element that is skipped may have faces: lists of integers whose name is that of vertex numbers.

@@ -281,3 +281,69 @@ fn lines_may_end_with_cr_alone() {
         assert_eq!(parse(&[lf.replace('\n', "\r").as_bytes(), &body].concat()).unwrap(), mesh);
     }
 }
+
+#[test]
+fn errors_name_their_own_line_after_rows_over_several_lines() {
+    let faces = "element face 2\nproperty list uchar int vertex_indices\nproperty uchar red";
+    // Line 11 goes on in line 12, which is valid. The faces are in lines 18 and 19.
+    let valid = with_element(faces, "3 0 1 2 9\n3 3 4 5 9\n").replacen("0 0 0", "0\n0 0", 1);
+    assert_eq!(parse(valid.as_bytes()).unwrap().faces(), [[0, 1, 2], [3, 4, 5]]);
+    let with = |from: &str, to: &str| message(valid.replacen(from, to, 1).as_bytes());
+    assert_eq!(with("3 3 4 5", "3 3 4 x"), "line 19: 'x' is not a number of the declared type");
+    assert_eq!(with("3 3 4 5 9", "3 3 4 5 256"), "line 19: '256' is not a number of the declared type");
+    assert_eq!(with("3 3 4 5", "3 3 4 -5"), "line 19: -5 is negative");
+    assert_eq!(with("3 3 4 5", "2 3 4"), "line 19: a face needs at least 3 corners, this one has 2");
+    assert_eq!(with("3 3 4 5", "250 3 4 5"), "line 19: a list of 250 items does not fit into the file");
+    assert_eq!(with("2 1 1", "2 1 nan1"), "line 17: 'nan1' is not a number of the declared type");
+    assert_eq!(
+        with("3 3 4 5", "3 3 4 6"),
+        "line 19: the face names vertex 6 (counted from 0), but there are 6"
+    );
+    let other = "line 7: the element 'face' has no list 'vertex_indices' or 'vertex_index'";
+    assert_eq!(with("vertex_indices", "corners"), other);
+    // Numbers that are missing or left over can belong to any uneven row.
+    let fewer = "line 11: this row has fewer values than the header declares";
+    for (from, to) in [("3 3 4 5 9\n", "3 3 4 5"), ("3 3 4 5 9", "3 3 4 5 9 9"), ("face 2", "face 200")] {
+        assert_eq!(with(from, to), fewer);
+    }
+    // A count in the middle of a line may be another number.
+    assert_eq!(with("3 0 1 2 9\n3 3 4 5", "3 0 1 2 9 250 3 4 5"), fewer);
+}
+
+#[test]
+fn a_single_cr_ends_a_line_of_a_file_with_other_line_ends() {
+    let mesh = parse(text().as_bytes()).unwrap();
+    for (from, to) in [
+        ("obj_info x\n", "obj_info x\r"),
+        ("comment caf\u{e9}\n", "comment caf\u{e9}\r"),
+        ("end_header\n", "end_header\r"),
+        ("end_header\n", "end_header\r\n"),
+        ("9 1 0 0\n", "9 1 0 0\r"),
+        ("ply\n", "ply\r"),
+        ("ply\n", "ply\r\n"),
+    ] {
+        let mixed = text().replacen(from, to, 1);
+        assert_eq!(parse(mixed.as_bytes()).unwrap(), mesh, "{to:?}");
+        let wrong = mixed.replace("4 0 1 2 3", "4 0 1 2 x");
+        assert_eq!(message(wrong.as_bytes()), "line 23: 'x' is not a number of the declared type", "{to:?}");
+    }
+    // Text mode that wrote CR LF as CR CR LF.
+    assert_eq!(parse(text().replace('\n', "\r\r\n").as_bytes()).unwrap(), mesh);
+    // A comment hides no declaration.
+    let hidden = text().replace("element face 1\n", "comment faces\relement face 1\n");
+    assert_eq!(parse(hidden.as_bytes()).unwrap(), mesh);
+}
+
+#[test]
+fn rows_of_binary_files_may_begin_with_bytes_of_line_ends() {
+    let declarations = "ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty char x\nproperty char y\n\
+        property char z\nelement face 1\nproperty list uchar uchar vertex_indices\nend_header\n";
+    for end in ["\n", "\r\n", "\r"] {
+        for first in [b'\n', b'\r', b' '] {
+            let rows = [first, 0, 0, 1, 0, 0, 0, 1, 0, 3, 0, 1, 2];
+            let bytes = [declarations.replace('\n', end).as_bytes(), &rows].concat();
+            let mesh = parse(&bytes).unwrap();
+            assert_eq!(mesh.rest_positions()[0], DVec3::new(first.into(), 0.0, 0.0), "{end:?} {first}");
+        }
+    }
+}

@@ -2,7 +2,7 @@
 
 use super::header::{Element, Encoding, Header, Kind, Number};
 use crate::error::quoted;
-use crate::text::decoded;
+use crate::text::{decoded, ends_line, is_line_end};
 use crate::{FormatError, Place};
 
 /// Reads the numbers after the header, with their places.
@@ -13,10 +13,12 @@ pub(super) struct Values<'a> {
     encoding: Encoding,
     /// Line of that byte, for text.
     line: usize,
-    /// Last byte of a line end.
-    line_end: u8,
+    /// Offset of the row that is read.
+    row_start: usize,
     /// The first row of a text file that is not a line of its own, and how it differs.
     uneven: Option<(usize, &'static str)>,
+    /// Whether the error is that the file has too few numbers or too many, which an uneven row can cause.
+    is_miscounted: bool,
 }
 
 impl<'a> Values<'a> {
@@ -26,8 +28,9 @@ impl<'a> Values<'a> {
             at: header.body,
             encoding: header.encoding,
             line: header.lines + 1,
-            line_end: header.line_end,
+            row_start: header.body,
             uneven: None,
+            is_miscounted: false,
         }
     }
 
@@ -42,30 +45,39 @@ impl<'a> Values<'a> {
         }
     }
 
+    /// Marks the next number as the first of a row.
+    pub fn begin_row(&mut self) {
+        if self.encoding == Encoding::Text {
+            self.skip_space();
+        }
+        self.row_start = self.at;
+    }
+
     /// Reads a row. In a text file, a row that is not a line of its own is recorded, because it can cause errors in later rows.
     pub fn row<T>(
         &mut self,
         read: impl FnOnce(&mut Self) -> Result<T, FormatError>,
     ) -> Result<T, FormatError> {
+        self.begin_row();
         if self.encoding != Encoding::Text || self.uneven.is_some() {
             return read(self);
         }
-        self.skip_space();
         let line = self.line;
         let value = read(self)?;
-        let rest = &self.bytes[self.at..];
-        let end = rest.iter().position(|b| !b.is_ascii_whitespace() || *b == self.line_end);
+        let mut rest = self.bytes[self.at..].iter();
+        let next = rest.find(|b| !b.is_ascii_whitespace() || is_line_end(**b));
         if self.line != line {
             self.uneven = Some((line, "fewer"));
-        } else if end.is_some_and(|end| rest[end] != self.line_end) {
+        } else if next.is_some_and(|next| !is_line_end(*next)) {
             self.uneven = Some((line, "more"));
         }
         Ok(value)
     }
 
-    /// Returns the cause of an error of the rows: the first row that is not a line of its own, if there is one.
+    /// Returns the cause of an error of the rows: if the numbers did not suffice, or some were left over, the first row that
+    /// is not a line of its own. Such rows are valid, so they cause no other errors.
     pub fn cause_of(&self, error: FormatError) -> FormatError {
-        match self.uneven {
+        match self.uneven.filter(|_| self.is_miscounted) {
             Some((line, what)) => {
                 FormatError::line(line, format!("this row has {what} values than the header declares"))
             }
@@ -73,8 +85,14 @@ impl<'a> Values<'a> {
         }
     }
 
+    /// Whether the row that is read begins a line, so that the rows before it are whole lines together.
+    fn row_begins_line(&self) -> bool {
+        let before = self.bytes[..self.row_start].iter().rev();
+        before.take_while(|b| b.is_ascii_whitespace()).any(|b| is_line_end(*b))
+    }
+
     /// Returns an error if an element cannot fit into the rest of the file, before reading it.
-    pub fn check_room(&self, element: &Element) -> Result<(), FormatError> {
+    pub fn check_room(&mut self, element: &Element) -> Result<(), FormatError> {
         let number = |n: Number| if self.encoding == Encoding::Text { 2 } else { n.size() };
         let row: usize = element
             .properties
@@ -88,6 +106,7 @@ impl<'a> Values<'a> {
         if element.count.checked_mul(row).is_some_and(|size| size <= left) {
             return Ok(());
         }
+        self.is_miscounted = true;
         let Element { name, count, line, .. } = element;
         let cause = format!("{count} rows of {} do not fit into the file: is it cut off?", quoted(name));
         Err(FormatError::line(*line, cause))
@@ -134,6 +153,8 @@ impl<'a> Values<'a> {
         let length = self.integer(count)? as usize;
         let size = if self.encoding == Encoding::Text { 1 } else { item.size() };
         if length.checked_mul(size).is_none_or(|size| size > self.bytes.len() - self.at) {
+            // In a row that begins a line, the count is not another number of an earlier row.
+            self.is_miscounted = !self.row_begins_line();
             let cause = format!("a list of {length} items does not fit into the file");
             return Err(FormatError::new(place, cause));
         }
@@ -153,10 +174,11 @@ impl<'a> Values<'a> {
         let place = self.place();
         match self.bytes.len() - self.at {
             0 => Ok(()),
-            left => Err(FormatError::new(
-                place,
-                format!("the file has {left} bytes more than the header declares"),
-            )),
+            left => {
+                self.is_miscounted = true;
+                let cause = format!("the file has {left} bytes more than the header declares");
+                Err(FormatError::new(place, cause))
+            }
         }
     }
 
@@ -174,8 +196,8 @@ impl<'a> Values<'a> {
     }
 
     fn skip_space(&mut self) {
-        while let Some(byte) = self.bytes.get(self.at).filter(|b| b.is_ascii_whitespace()) {
-            self.line += usize::from(*byte == self.line_end);
+        while self.bytes.get(self.at).is_some_and(u8::is_ascii_whitespace) {
+            self.line += usize::from(ends_line(self.bytes, self.at));
             self.at += 1;
         }
     }
@@ -186,6 +208,7 @@ impl<'a> Values<'a> {
         let end = rest.iter().position(u8::is_ascii_whitespace).unwrap_or(rest.len());
         let line = self.line;
         if end == 0 {
+            self.is_miscounted = true;
             return Err(FormatError::line(line, "the file ends here, within a row"));
         }
         self.at += end;

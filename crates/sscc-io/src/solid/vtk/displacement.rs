@@ -43,7 +43,28 @@ impl Displacement {
     }
 
     /// Returns the chosen one of these arrays, each with its number of components.
+    ///
+    /// # Errors
+    /// When no array has the wanted name; when two have the chosen name, because which of them the file means is unknown.
     pub(super) fn choose<'a>(
+        &self,
+        arrays: impl Iterator<Item = (&'a str, usize)> + Clone,
+    ) -> Result<Option<usize>, FormatError> {
+        let chosen = self.choose_first(arrays.clone())?;
+        let name = chosen.and_then(|chosen| arrays.clone().nth(chosen)).map(|(name, _)| name);
+        let is_chosen = |(other, components): &(&str, usize)| *components == 3 && Some(*other) == name;
+        if arrays.filter(is_chosen).nth(1).is_none() {
+            return Ok(chosen);
+        }
+        let cause = format!(
+            "there are two arrays of vectors {}: rename or remove one (FILE# takes the points as they are)",
+            quoted(name.unwrap_or_default())
+        );
+        Err(FormatError::part("point data", cause))
+    }
+
+    /// As [`Displacement::choose`], but returns the first array of the chosen name.
+    fn choose_first<'a>(
         &self,
         arrays: impl Iterator<Item = (&'a str, usize)> + Clone,
     ) -> Result<Option<usize>, FormatError> {

@@ -450,11 +450,102 @@ fn encodings_of_appended_data_are_compared_exactly() {
             .map_err(|error| error.to_string())
     };
     assert_eq!((with(b"encoding='raw'"), with(b"raw='base64' encoding=\"raw\"")), (Ok(8), Ok(8)));
-    for bad in ["encoding='rawer'", "encoding='RAW'", "raw='1'", "encoding=raw", "encoding='' raw=''"] {
+    for bad in [
+        "encoding='rawer'",
+        "encoding='RAW'",
+        "raw='1'",
+        "encoding=raw",
+        "encoding='' raw=''",
+        "encoding='raw' encoding='base64'",
+        "encoding='raw' encoding='raw'",
+    ] {
         assert_eq!(
             with(bad.as_bytes()).unwrap_err(),
-            "AppendedData: its encoding is neither 'raw' nor 'base64'",
+            "AppendedData: its encoding must be stated once, as 'raw' or as 'base64'",
             "{bad}"
         );
+    }
+}
+
+/// Which of two equal names the file means is unknown.
+#[test]
+fn repeated_attributes_and_arrays_are_refused() {
+    let whole = vtu(TET, ["0 1 2 3", "4", "10"], "");
+    assert!(parse(whole.as_bytes()).is_ok());
+    for (from, to, named) in [
+        ("<Piece ", "<Piece NumberOfPoints='4' ", "line 3: 'Piece' has two attributes 'NumberOfPoints'"),
+        (
+            "Name='types'",
+            "Name='connectivity' Name='types'",
+            "line 11: 'DataArray' has two attributes 'Name': remove one of them, or save the file again",
+        ),
+        (
+            "version='1.0' b",
+            "version='1.0' type='ImageData' b",
+            "line 2: 'VTKFile' has two attributes 'type'",
+        ),
+        (
+            "</Points>",
+            "<DataArray type='Float64'>0 0 0 2 0 0 0 1 0 0 0 1</DataArray></Points>",
+            "line 15: there is a second array in 'Points': remove one of the two, or save the grid again",
+        ),
+        (
+            "</Piece>",
+            "<Points><DataArray type='Float64'>0 0 0</DataArray></Points></Piece>",
+            "line 16: there is a second array in 'Points'",
+        ),
+        (
+            "</Cells>",
+            "<DataArray type='Int64' Name='connectivity'>0 1 3 2</DataArray></Cells>",
+            "line 14: there is a second array 'connectivity' in 'Cells'",
+        ),
+        (
+            "</Piece>",
+            "<Cells><DataArray type='Int64' Name='offsets'>4</DataArray></Cells></Piece>",
+            "line 16: there is a second array 'offsets' in 'Cells'",
+        ),
+        (
+            "</Cells>",
+            "<DataArray type='UInt8' Name='types'>10</DataArray></Cells>",
+            "line 14: there is a second array 'types' in 'Cells'",
+        ),
+    ] {
+        assert_eq!(whole.matches(from).count(), 1, "{from}");
+        let message = refused(&whole.replace(from, to));
+        assert!(message.starts_with(named), "{named}: {message}");
+    }
+    // Other arrays of cells may be there.
+    let more = whole.replace("</Cells>", "<DataArray type='Int64' Name='faces'>0</DataArray></Cells>");
+    assert!(parse(more.as_bytes()).is_ok());
+}
+
+#[test]
+fn repeated_displacements_are_refused() {
+    let array = |name: &str, components: usize| {
+        let text = "0.5 ".repeat(4 * components);
+        format!(
+            "<DataArray type='Float32' Name='{name}' NumberOfComponents='{components}'>{text}</DataArray>"
+        )
+    };
+    let tet = ["0 1 2 3", "4", "10"];
+    let xml = |data: &str| vtu(TET, tet, data);
+    let numbers = "0 0 0 0 0 0 0 0 0 0 0 1\n";
+    let legacy = |names: &[&str]| {
+        let vectors = names.iter().map(|name| format!("VECTORS {name} float\n{numbers}"));
+        format!("{LEGACY}{}", vectors.collect::<String>())
+    };
+    let field = format!("{LEGACY}VECTORS u float\n{numbers}FIELD f 1\nu 3 4 float\n{numbers}");
+    let cause = "point data: there are two arrays of vectors 'u': rename or remove one (FILE# takes the points as they are)";
+    for text in [xml(&[array("u", 3), array("u", 3)].concat()), legacy(&["u", "u"]), field] {
+        assert_eq!(refused(&text), cause);
+        let named = parse_grid(text.as_bytes(), &Displacement::Named("u".into()));
+        assert_eq!(named.err().unwrap().to_string(), cause);
+        assert!(parse_grid(text.as_bytes(), &Displacement::None).is_ok());
+    }
+    // Arrays of other names or sizes decide nothing.
+    let others = [array("v", 3), array("v", 3), array("u", 3), array("u", 1)].concat();
+    for text in [xml(&others), legacy(&["v", "v", "u"])] {
+        let grid = parse_grid(text.as_bytes(), &Displacement::ByName).unwrap();
+        assert_eq!(grid.displacement.unwrap().0, "u");
     }
 }

@@ -138,7 +138,8 @@ fn element<'a>(
     line: usize,
 ) -> Result<Element<'a>, FormatError> {
     let refused = |cause: String| malformed(line, &cause);
-    let mut attributes = Vec::new();
+    let mut attributes: Vec<(String, String)> = Vec::new();
+    // The checks of `quick-xml` name neither the element nor the attribute, as `repeated_name` does.
     for attribute in start.attributes().with_checks(false) {
         let attribute = attribute.map_err(|error| refused(error.to_string()))?;
         let value = attribute
@@ -147,7 +148,22 @@ fn element<'a>(
         attributes.push((attribute.key.as_ref().to_owned(), value.into_owned()));
     }
     let name = start.name().as_ref().to_owned();
+    if let Some(twice) = repeated_name(&attributes) {
+        let cause = format!(
+            "{} has two attributes {}: remove one of them, or save the file again",
+            quoted(&name),
+            quoted(twice)
+        );
+        return Err(FormatError::line(line, cause));
+    }
     Ok(Element { name, parent: parent.copied(), attributes, text: "", line })
+}
+
+/// Returns a name that two attributes have. Sorts them, because a hostile element may have any number of attributes.
+fn repeated_name(attributes: &[(String, String)]) -> Option<&str> {
+    let mut names: Vec<&str> = attributes.iter().map(|(name, _)| name.as_str()).collect();
+    names.sort_unstable();
+    names.windows(2).find(|two| two[0] == two[1]).map(|two| two[0])
 }
 
 /// Counts the lines of a text once, while a reader advances.
@@ -231,7 +247,7 @@ fn appended(tail: &[u8]) -> Result<(bool, Option<&[u8]>), FormatError> {
     let is_base64 = match encoding(&tail[..=begin]).as_deref() {
         Some("raw") => false,
         Some("base64") => true,
-        _ => return Err(refused("its encoding is neither 'raw' nor 'base64'")),
+        _ => return Err(refused("its encoding must be stated once, as 'raw' or as 'base64'")),
     };
     let data = tail[begin + 1..].trim_ascii_start();
     let Some(data) = data.strip_prefix(b"_") else { return Err(refused("its data must begin with '_'")) };
@@ -269,13 +285,11 @@ fn read_grid(
             .iter()
             .filter(move |element| element.name == "DataArray" && element.parent.is_some_and(is_in))
     };
-    let Some(array) = within("Points").next() else {
-        return Err(piece.refused("the piece has no array in 'Points'"));
-    };
-    let positions = vectors(decoder.floats(&array.array()?, points.saturating_mul(3))?);
-    let cell_array = |name: &str| match within("Cells").find(|array| array.get("Name") == Some(name)) {
-        Some(array) => array.array(),
-        None => Err(piece.refused(format!("the piece has no array {} in 'Cells'", quoted(name)))),
+    let positions = only_array(within("Points"), piece, "array in 'Points'")?;
+    let positions = vectors(decoder.floats(&positions, points.saturating_mul(3))?);
+    let cell_array = |name: &str| {
+        let named = within("Cells").filter(|array| array.get("Name") == Some(name));
+        only_array(named, piece, &format!("array {} in 'Cells'", quoted(name)))
     };
     let ends = decoder.integers(&cell_array("offsets")?, cells)?;
     let types = decoder.integers(&cell_array("types")?, cells)?;
@@ -289,6 +303,22 @@ fn read_grid(
         None => None,
     };
     Ok(Grid { points: positions, cells: Cells { types, ends, connectivity }, displacement, is_unclear })
+}
+
+/// Returns the only one of these arrays of a piece. Which of two the file means is unknown.
+fn only_array<'e, 'a: 'e>(
+    mut arrays: impl Iterator<Item = &'e Element<'a>>,
+    piece: &Element<'_>,
+    what: &str,
+) -> Result<Array<'a>, FormatError> {
+    let Some(first) = arrays.next() else {
+        return Err(piece.refused(format!("the piece has no {what}")));
+    };
+    match arrays.next() {
+        Some(second) => Err(second
+            .refused(format!("there is a second {what}: remove one of the two, or save the grid again"))),
+        None => first.array(),
+    }
 }
 
 fn vectors(numbers: Vec<f64>) -> Vec<DVec3> {

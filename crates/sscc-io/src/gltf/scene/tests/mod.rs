@@ -9,3 +9,4 @@ mod lists;
 mod number_types;
 mod places;
 mod positions;
+mod shown;
