@@ -28,7 +28,8 @@ pub fn _triangulated<'py>(
             )));
         }
         let unsigned = |number: &i64| {
-            u64::try_from(*number).map_err(|_| value(format!("{place}: {name} has the negative number {number}")))
+            u64::try_from(*number)
+                .map_err(|_| value(format!("{place}: {name} has the negative number {number}")))
         };
         found.as_slice()?.iter().map(unsigned).collect()
     };
