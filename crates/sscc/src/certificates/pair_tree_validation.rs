@@ -94,3 +94,35 @@ impl PairTree {
         Err("a list of siblings does not end")
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::hierarchy::Node;
+
+    #[test]
+    fn entries_name_each_child_at_most_once() {
+        let node = |first_triangle, triangle_count, first_child, child_count| Node {
+            first_triangle,
+            triangle_count,
+            first_child,
+            child_count,
+        };
+        let top = [node(0, 194, 1, 3), node(0, 65, 4, 2), node(65, 65, 6, 2), node(130, 64, 8, 2)];
+        let leaves = [(0, 33), (33, 32), (65, 33), (98, 32), (130, 32), (162, 32)];
+        let nodes = [&top[..], &leaves.map(|(first, count)| node(first, count, 0, 0))].concat();
+        let hierarchy = Hierarchy::from_parts(nodes, (0..194).collect(), 194).unwrap();
+        // The second of three pairs of the root's children, and its two children.
+        let (last, none) = (1 << 31, u32::MAX);
+        let pairs = |which: [u32; 3]| {
+            let starts = [vec![0], vec![none; 9]].concat();
+            let entries =
+                [(0.1, last | which[0] << 28 | 1), (0.2, which[1] << 28), (0.3, last | which[2] << 28)];
+            PairTree::from_parts(1.0, starts, entries).pairs(&hierarchy)
+        };
+        assert_eq!(pairs([1, 0, 1]), Ok(vec![(1, 3), (4, 3), (5, 3)]));
+        for bad in [[3, 0, 1], [1, 0, 2], [1, 0, 0], [1, 1, 0]] {
+            assert_eq!(pairs(bad), Err("a child is listed twice or does not exist"), "{bad:?}");
+        }
+    }
+}

@@ -3,13 +3,15 @@
 use glam::DVec3;
 use sscc_testing::{cases, threshold};
 
-use super::StoredPair;
 use super::test_models::ring;
+use super::{Digest, StoredPair};
 use crate::certificates::PairTree;
 use crate::certificates::Scope;
 use crate::hierarchy::{Hierarchy, NodePair};
 use crate::model::rounding::to_f32_down;
-use crate::{Certificates, CertifyOptions, Method, Metric, Modes, Pair, Query, ReducedModel, TriMesh};
+use crate::{
+    Certificates, CertifyOptions, Method, Metric, MetricKind, Modes, Pair, Query, ReducedModel, TriMesh,
+};
 
 fn certify(model: &ReducedModel, budget: usize) -> Certificates {
     Certificates::compute(model, &CertifyOptions::default().budget(budget), &()).unwrap()
@@ -220,4 +222,73 @@ fn outer_pairs_are_bounded() {
         }
     }
     assert!(outer > threshold(1000) && collided > threshold(100), "{outer} {collided}");
+}
+
+/// One mode stretches two strips, and lowers the upper one: they meet at q = 0.2, everywhere at once. Each node above the
+/// buckets is a part of both strips.
+#[test]
+fn nodes_above_buckets_are_no_freer_than_their_triangles() {
+    let quads = 150;
+    let along = |i: usize| 2.0 * i as f64 / quads as f64 - 1.0;
+    let strip = |z: f64| (0..=quads).flat_map(move |i| [0.0, 0.02].map(|y| DVec3::new(along(i), y, z)));
+    let positions: Vec<DVec3> = strip(0.0).chain(strip(0.002)).collect();
+    let squares = (0..2 * quads + 1).filter(|i| *i != quads).map(|i| 2 * i as u32);
+    let faces = squares.flat_map(|i| [[i, i + 1, i + 2], [i + 1, i + 3, i + 2]]).collect();
+    let modes = positions.iter().map(|p| DVec3::new(p.x, 0.0, if p.z > 0.0 { -0.01 } else { 0.0 })).collect();
+    let mesh = TriMesh::new(positions, faces).unwrap();
+    let model = ReducedModel::with_metric(mesh, Modes::new(1, modes).unwrap(), Metric::identity(1)).unwrap();
+    let options = CertifyOptions::default().budget(4096).local_budget(0);
+    let certificates = Certificates::compute(&model, &options, &()).unwrap();
+    let parts = certificates.parts();
+    assert!(parts.pair_tree.limit() > 0.25, "{}", parts.pair_tree.limit());
+    let nodes = parts.hierarchy.nodes().iter().zip(&parts.node_radii);
+    let above: Vec<f64> = nodes.filter(|(node, _)| !node.fits_in_bucket()).map(|(_, r)| *r).collect();
+    assert!(above.len() > 3 && above.iter().all(|radius| (0.15..=0.2).contains(radius)), "{above:?}");
+}
+
+/// Also where no coordinate of the centre is 0.
+#[test]
+fn norms_clamps_and_digests_depend_on_the_centre() {
+    let corners = [DVec3::ZERO, DVec3::X, DVec3::Y];
+    let positions = [corners, corners.map(|p| p + DVec3::Z)].concat();
+    let moves = |v: usize| if v < 3 { [DVec3::ZERO; 2] } else { [DVec3::NEG_Z, DVec3::X] };
+    let modes = Modes::new(2, (0..6).flat_map(moves).collect()).unwrap();
+    let mesh = TriMesh::new(positions, vec![[0, 1, 2], [3, 4, 5]]).unwrap();
+    let model = ReducedModel::with_metric(mesh, modes, Metric::identity(2)).unwrap();
+    let plain = Scope::of(&model);
+    let about = |center: [f64; 2]| Scope { center: center.to_vec(), ..plain.clone() };
+    for center in [[0.0, 0.0], [0.5, 0.0], [0.25, 0.5]] {
+        let norm = about(center).norm(&[center[0] + 3.0, center[1] + 4.0]);
+        assert!((5.0..5.0 + 1e-12).contains(&norm), "{center:?}: {norm}");
+        assert_eq!(about(center).norm(&center), 0.0);
+    }
+    let options = CertifyOptions::default().center(vec![0.25, 0.5]).budget(0).local_budget(0);
+    let certificates = Certificates::compute(&model, &options, &()).unwrap();
+    let (q, root) = ([5.25, -7.5], certificates.root_radius());
+    assert!((0.6..=0.75).contains(&root), "{root}");
+    let (share, inside) = (root / certificates.norm(&q).unwrap(), certificates.clamp(&q).unwrap().unwrap());
+    for ((x, q), c) in inside.iter().zip(q).zip([0.25, 0.5]) {
+        assert!((x - (c + (q - c) * share)).abs() <= 1e-12, "{inside:?}");
+    }
+    let ignoring = |pair| Scope { filter: plain.filter.clone().ignoring([pair]), ..plain.clone() };
+    let except = |pair| Scope { exceptions: vec![pair], ..plain.clone() };
+    let dense = |s| Scope {
+        metric: Metric::from_factor(MetricKind::Given, 2, vec![1.0, s, 0.0, 1.0]).unwrap(),
+        ..plain.clone()
+    };
+    let scopes = [
+        plain.clone(),
+        about([0.1, 0.2]),
+        about([0.2, 0.1]),
+        ignoring((0, 1)),
+        ignoring((0, 2)),
+        except((0, 1)),
+        except((0, 2)),
+        dense(0.5),
+        dense(0.25),
+    ];
+    let digests = scopes.map(|scope| Digest::of(&model, &scope));
+    for (i, digest) in digests.iter().enumerate() {
+        assert!(!digests[..i].contains(digest), "{i}");
+    }
 }

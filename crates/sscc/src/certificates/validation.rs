@@ -88,3 +88,77 @@ fn check_radii(parts: &CertificateParts) -> Result<(), &'static str> {
     }
     Ok(())
 }
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use glam::DVec3;
+
+    use super::*;
+    use crate::certificates::test_models::ring;
+    use crate::certificates::{Digest, Scope};
+    use crate::{CertifyOptions, ContactFilter, Modes, Pair, ReducedModel, TriMesh, TriangleGroups};
+
+    fn certify(model: &ReducedModel, budget: usize) -> Certificates {
+        Certificates::compute(model, &CertifyOptions::default().budget(budget), &()).unwrap()
+    }
+
+    #[test]
+    fn wrong_numbers_are_refused() {
+        let good = certify(&ring(40, 2, 0.4), 64).parts().clone();
+        let is_good = |change: &dyn Fn(&mut CertificateParts)| {
+            let mut parts = good.clone();
+            change(&mut parts);
+            Certificates::try_from(parts).is_ok()
+        };
+        assert!(is_good(&|_| ()));
+        for bad in [f64::NAN, -1.0] {
+            assert!(
+                !is_good(&|p| p.node_radii[0] = bad) && !is_good(&|p| p.root_pair_radii[0] = bad),
+                "{bad}"
+            );
+            assert!(!is_good(&|p| *p.node_radii.last_mut().unwrap() = bad), "{bad}");
+        }
+        assert!([f64::NAN, -1.0, 0.0].iter().all(|bad| !is_good(&|p| p.global_radius = *bad)));
+        assert!([f64::NAN, -1.0, 0.0, 1.0, 2.0].iter().all(|bad| !is_good(&|p| p.epsilon = *bad)));
+        assert!(!is_good(&|p| p.node_radii.push(1.0)) && !is_good(&|p| _ = p.node_radii.pop()));
+        assert!(!is_good(&|p| p.root_pair_radii.push(1.0)) && !is_good(&|p| _ = p.root_pair_radii.pop()));
+    }
+
+    #[test]
+    fn exceptions_are_sorted_pairs_that_count() {
+        let good = certify(&ring(40, 2, 0.4), 64).parts().clone();
+        let with = |exceptions: &[Pair], filter: &ContactFilter| {
+            let (exceptions, filter) = (exceptions.to_vec(), filter.clone());
+            let scope = Arc::new(Scope { exceptions, filter, ..(*good.scope).clone() });
+            Certificates::try_from(CertificateParts { scope, ..good.clone() }).is_ok()
+        };
+        let plain = &good.scope.filter;
+        assert!(with(&[(0, 1), (0, 2)], plain));
+        for bad in [&[(0, 2), (0, 1)][..], &[(0, 1), (0, 1)], &[(1, 0)], &[(1, 1)]] {
+            assert!(!with(bad, plain), "{bad:?}");
+        }
+        // Triangles of different groups count. Whether a triangle exists is checked with the model.
+        let groups: Vec<u32> = (0..80).map(|t| t % 2).collect();
+        let filter = plain.clone().with_groups(TriangleGroups::new(&groups).unwrap().between_only());
+        assert!(with(&[(0, 1)], &filter) && !with(&[(0, 2)], &filter) && with(&[(0, 80)], &filter));
+    }
+
+    #[test]
+    fn exceptions_of_triangles_that_do_not_exist_fit_no_model() {
+        // Two triangles that cross at rest.
+        let p = [[0, 0, 0], [4, 0, 0], [0, 4, 0], [1, 1, -1], [1, 1, 1], [2, 1, 1]];
+        let p = p.map(|p| DVec3::from_array(p.map(f64::from))).to_vec();
+        let mesh = TriMesh::new(p, vec![[0, 1, 2], [3, 4, 5]]).unwrap();
+        let model = ReducedModel::new(mesh, Modes::new(1, vec![DVec3::X; 6]).unwrap()).unwrap();
+        let certificates = certify(&model, 0);
+        assert_eq!((certificates.rest_collisions(), certificates.exceptions()), (1, &[(0, 1)][..]));
+        assert!(certificates.check_model(&model).is_ok());
+        let mut parts = certificates.parts().clone();
+        let scope = Scope { exceptions: vec![(0, 2)], ..(*parts.scope).clone() };
+        (parts.digest, parts.scope) = (Digest::of(&model, &scope), Arc::new(scope));
+        let forged = Certificates::try_from(parts).unwrap();
+        assert!(matches!(forged.check_model(&model), Err(Error::Certificates(_))));
+    }
+}

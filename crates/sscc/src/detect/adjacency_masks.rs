@@ -188,4 +188,16 @@ mod tests {
         }
         assert!(neighbours > 20 && others > 20, "{neighbours} {others}");
     }
+
+    #[test]
+    fn vertices_of_any_number_of_triangles_are_shared() {
+        for count in 22..=27_u32 {
+            let faces: Vec<[u32; 3]> = (0..count).map(|i| [0, 1 + 2 * i, 2 + 2 * i]).collect();
+            let filter = PairFilter::with_classes(&faces, None, &ContactFilter::default());
+            let slots: Vec<u32> = (0..=count.div_ceil(8)).map(|p| (8 * p).min(count)).collect();
+            let triangles: Vec<u32> = (0..count).collect();
+            let masks = AdjacencyMasks::new(&[0, 1, count.div_ceil(8)], &slots, &triangles, &filter);
+            assert!(masks.can_share_vertex(0, 1), "{count}");
+        }
+    }
 }

@@ -227,9 +227,11 @@ impl<const E: usize> Kernel for MoveBox<'_, E> {
 mod tests {
     use super::*;
     use crate::detect::f32_frame::F32Frame;
+    use crate::detect::layout::{Layout, Needs};
     use crate::detect::vertex_motion::rounding_bound;
     use crate::detect::vertex_store::VertexStore;
-    use crate::{Modes, TriMesh};
+    use crate::filter::PairFilter;
+    use crate::{ContactFilter, Modes, TriMesh};
 
     /// Returns the next of fixed pseudo-random numbers in [-1, 1).
     fn random(state: &mut u64) -> f64 {
@@ -349,6 +351,17 @@ mod tests {
             }
             let is_as_many = if every > 1 { coarse == 0 } else { coarse > 50 };
             assert!(checked > 10_000 && is_as_many && wide < 4.0, "{checked} {coarse} {wide}");
+        }
+    }
+
+    #[test]
+    fn listed_modes_have_no_coarse_positions() {
+        for every in [1, 5] {
+            let model = model(10, every, &mut 3);
+            let hierarchy = Hierarchy::build(&model, model.metric());
+            let filter = PairFilter::new(&model, &ContactFilter::default());
+            let layout = Layout::new(&model, &hierarchy, &filter, Needs::LAZY);
+            assert_eq!(layout.coarse.is_empty(), every == 5);
         }
     }
 }

@@ -139,4 +139,16 @@ mod tests {
         }
         assert!(rounded > 2500, "{rounded}");
     }
+
+    #[test]
+    fn uncertain_sides_and_small_errors_are_not_certain() {
+        let expected = ROUNDING * 2.0 + 4.0 * 0.25 * (26.0 + 4.0 * 0.25) + f64::MIN_POSITIVE;
+        assert_eq!(error([3.0, -5.0], [-7.0, 11.0], 2.0, 0.25), expected);
+        let (off, on) = ([1.0, 1.0], [2.0, 0.0]);
+        for points in [[off, on], [on, off]] {
+            assert!(!is_on_one_side([0.0, 0.0], [4.0, 0.0], points, 0.0));
+        }
+        // Back along a nearly vertical edge.
+        assert!(!has_one_common_point([0.0, 0.0], [1e-20, 1.0], [2e-20, 0.5], 1e-16));
+    }
 }

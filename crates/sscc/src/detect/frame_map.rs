@@ -84,3 +84,32 @@ impl FrameMap {
         AabbF32 { lower: center - half, upper: center + half }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::Aabb;
+
+    #[test]
+    fn errors_and_boxes_are_those_of_their_formulas() {
+        let around = |x: f64| F32Frame::around(Aabb { lower: DVec3::splat(-x), upper: DVec3::splat(x) });
+        let (own, world) = (around(1.0), around(2.0));
+        let columns = [[0.3, -0.5, 0.2], [0.7, 0.4, -0.1], [-0.6, 0.2, 0.9]].map(DVec3::from_array);
+        let rotation = DMat3::from_cols(columns[0], columns[1], columns[2]);
+        let (error, rounding) = (1e-4_f32, 1e-6);
+        let pose = (rotation, DVec3::new(0.1, 0.2, 0.3));
+        let map = FrameMap::new([&own, &world], pose, error, rounding).unwrap();
+        // The first row has the largest sum, 1.6; the frame of the world has half the scale.
+        let rounded = 64.0 * 2.0_f64.powi(-24) * 1.8;
+        let all = 1.01 * (0.8 * f64::from(error) + rounded) + f64::from(world.error_bound(rounding));
+        let found = f64::from(map.error());
+        assert!(found >= all && found <= all * (1.0 + 3e-6), "{found} {all}");
+        let lower = Vec4::new(-0.5, -0.25, 0.0, 0.0);
+        let image = map.apply_to_aabb(AabbF32 { lower, upper: Vec4::new(0.5, 0.75, 0.5, 0.0) });
+        let center = Vec4::new(0.0625, 0.175, 0.25, 0.0);
+        let half = Vec4::new(0.325, 0.25, 0.1875, 0.0) + Vec4::splat(map.error());
+        for (found, expected) in [(image.lower, center - half), (image.upper, center + half)] {
+            assert!((found - expected).truncate().abs().max_element() < 1e-6, "{found} {expected}");
+        }
+    }
+}

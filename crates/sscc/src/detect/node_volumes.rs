@@ -362,3 +362,80 @@ impl<const E: usize> NodeVolumes<E> {
         self.positions.corners(vertices)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::ContactFilter;
+    use crate::filter::PairFilter;
+
+    /// A motion in a box about 0 that has one length as margin and as slack.
+    struct Wide {
+        half: f64,
+        margin: f64,
+    }
+
+    impl VertexMotion<1> for Wide {
+        const HAS_ERROR_BOUND: bool = true;
+
+        fn rounding(&self) -> f64 {
+            0.0
+        }
+
+        fn margin(&self) -> f64 {
+            self.margin
+        }
+
+        fn margin_beside_rounding(&self) -> f64 {
+            self.margin
+        }
+
+        fn overall_aabb(&self, _: &Layout) -> Aabb {
+            Aabb { lower: DVec3::splat(-self.half), upper: DVec3::splat(self.half) }
+        }
+
+        fn coarse_coordinates(&self) -> Option<[&[f64]; 1]> {
+            None
+        }
+
+        fn coarse_slack(&self, _: u32) -> Option<DVec3> {
+            Some(DVec3::splat(self.margin))
+        }
+
+        fn positions(&self, _: &Layout, _: u32) -> [DVec3; 1] {
+            [DVec3::ZERO]
+        }
+
+        fn node_aabb(&self, _: &Layout, _: u32) -> Option<Aabb> {
+            None
+        }
+    }
+
+    #[test]
+    fn lengths_in_the_frame_are_rounded_up() {
+        let hierarchy = Hierarchy::build_by_median(&[[0, 1, 2]], &[DVec3::ZERO, DVec3::X, DVec3::Y]);
+        let filter = PairFilter::with_classes(&[[0, 1, 2]], None, &ContactFilter::default());
+        let layout = Arc::new(Layout::of_positions(3, &hierarchy, &filter));
+        for (half, share) in [(1e-3, 0.4), (1.0, 0.7), (500.0, 0.01)] {
+            let motion = Wide { half, margin: half * share };
+            let mut volumes = NodeVolumes::<1>::new(&layout, true);
+            volumes.begin(&hierarchy, &motion);
+            let frame = *volumes.frame();
+            let slack = CoarsePositions::<1>::slack(0, &motion, &frame);
+            let rounding = 4.0 * f64::from(f32::EPSILON);
+            for found in [
+                f64::from(volumes.corner_error() - frame.error_bound(0.0)),
+                f64::from(volumes.margin(&motion).x) - rounding,
+                f64::from(slack.x),
+                f64::from(slack.z),
+            ] {
+                assert!(found >= share * (1.0 + 5e-6) && found <= share * (1.0 + 2e-5), "{half}: {found}");
+            }
+            // Numbers of searches begin again, and nothing is current.
+            volumes.move_corners([0, 1, 2], &motion);
+            volumes.search = u32::MAX;
+            volumes.begin(&hierarchy, &motion);
+            assert!(volumes.search == 1 && !volumes.positions.is_moved(0));
+        }
+    }
+}

@@ -131,7 +131,13 @@ fn positive_sides(a: DVec3, b: DVec3, c: DVec3) -> u16 {
 
 #[cfg(test)]
 mod tests {
+    use std::sync::Arc;
+
     use super::*;
+    use crate::detect::layout::{Layout, Needs};
+    use crate::detect::vertex_motion::DeformedMotion;
+    use crate::filter::PairFilter;
+    use crate::{ContactFilter, Modes, ReducedModel, test_models};
 
     #[test]
     fn positive_sides_are_those_of_the_normal() {
@@ -180,5 +186,24 @@ mod tests {
             }
         }
         assert!(certain > 50_000 && open > 1000, "{certain} {open}");
+    }
+
+    #[test]
+    fn only_positive_directions_cull() {
+        let mesh = test_models::square(4);
+        let modes = Modes::new(1, mesh.rest_positions().to_vec()).unwrap();
+        let model = ReducedModel::new(mesh, modes).unwrap();
+        let hierarchy = Hierarchy::build(&model, model.metric());
+        let filter = PairFilter::new(&model, &ContactFilter::default());
+        let layout = Arc::new(Layout::new(&model, &hierarchy, &filter, Needs::NORMALS));
+        let mut volumes = NodeVolumes::<1>::new(&layout, false);
+        let q = [0.0];
+        volumes.begin(&hierarchy, &DeformedMotion::new([&q[..]], model.check_coordinates(&q).unwrap()));
+        let mut cones = NormalCones::new(hierarchy.nodes().len());
+        // The contour is simple along z, and a line along x and y.
+        for (k, is_culled) in [(0, false), (1, false), (2, false), (3, false), (4, true), (5, true)] {
+            cones.positive[0] = 1 << k;
+            assert_eq!(cones.cull(0, &volumes), is_culled, "{k}");
+        }
     }
 }

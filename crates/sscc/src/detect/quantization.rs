@@ -152,3 +152,33 @@ impl Quantization {
         error <= MAX_ERROR
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_error_bound_is_that_of_its_formula() {
+        let mut used = [0; 2];
+        for (rank, size) in [(1, 1e-3), (7, 1.0), (60, 1e3)] {
+            let sizes = (0..rank).map(|k| size * f64::from(k + 1)).collect();
+            let quantization = Quantization { center: DVec3::ZERO, half: 0.75 * size, sizes };
+            let frame = F32Frame::around(Aabb { lower: DVec3::splat(-size), upper: DVec3::splat(size) });
+            // Factors of modes add up to 3 and to 1.5.
+            let q = |sum: f64| -> Vec<f64> { (0..rank).map(|k| -sum / f64::from(rank * (k + 1))).collect() };
+            let ends = [q(1.5), q(3.0)];
+            for share in [0.0, 1e-6, 1e-3] {
+                let mut motion = CoarseMotion::<2>::default();
+                let ends = ends.each_ref().map(|q| &q[..]);
+                let is_used = quantization.begin(&mut motion, ends, &frame, share * size);
+                let rounded = 2.0_f64.powi(-24) * f64::from(rank + 12) * (1.0 + 2.0 * 3.75);
+                let bound = 1.1 * (rounded + 3.75 / (2.0 * WHOLE)) + 4.0 * share;
+                let error = f64::from(motion.error);
+                assert!(error >= bound && error <= bound * (1.0 + 3e-6), "{rank} {share}: {error} {bound}");
+                assert_eq!(is_used, bound <= MAX_ERROR);
+                used[usize::from(is_used)] += 1;
+            }
+        }
+        assert_eq!(used, [3, 6]);
+    }
+}

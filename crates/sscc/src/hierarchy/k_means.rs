@@ -112,3 +112,28 @@ fn move_centers(
 fn squared_distance(a: &ClusterFeature, b: &ClusterFeature) -> f64 {
     a.iter().zip(b).map(|(x, y)| (x - y) * (x - y)).sum()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// All triangles alike, at two places, one far away, or in a row.
+    #[test]
+    fn clusters_hold_all_triangles_and_none_holds_nearly_all() {
+        let places: [fn(usize) -> f64; 4] =
+            [|_| 0.0, |i| (i % 2) as f64, |i| if i == 0 { 1e3 } else { 0.0 }, |i| i as f64];
+        for (case, place) in places.into_iter().enumerate() {
+            for count in [9, 20, 200] {
+                let feature = |i: usize| std::array::from_fn(|k| if k == 0 { place(i) } else { 0.0 });
+                let features: Vec<ClusterFeature> = (0..count).map(feature).collect();
+                let mut triangles: Vec<u32> = (0..count as u32).rev().collect();
+                let sizes = cluster(&features, &mut triangles);
+                assert!((2..=BRANCHING).contains(&sizes.len()), "{case} {count}: {sizes:?}");
+                assert!(sizes.iter().all(|s| *s > 0 && *s as usize * 8 <= count * 7), "{case}: {sizes:?}");
+                assert_eq!(sizes.iter().sum::<u32>() as usize, count);
+                triangles.sort_unstable();
+                assert!(triangles.into_iter().eq(0..count as u32));
+            }
+        }
+    }
+}

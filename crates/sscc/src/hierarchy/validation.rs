@@ -92,3 +92,50 @@ fn check_tree(nodes: &[Node], triangles: usize) -> Result<(), Error> {
     }
     Ok(())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn node(first_triangle: u32, triangle_count: u32, first_child: u32, child_count: u32) -> Node {
+        Node { first_triangle, triangle_count, first_child, child_count }
+    }
+
+    #[test]
+    fn only_trees_over_all_triangles_are_hierarchies() {
+        let is_tree = |nodes: &[Node], order: &[u32]| {
+            Hierarchy::from_parts(nodes.to_vec(), order.to_vec(), nodes[0].triangle_count as usize).is_ok()
+        };
+        let leaf = |first| node(first, 1, 0, 0);
+        let inner = |children: [u32; 3]| {
+            let halves = [0, 1, 2].map(|i| node(2 * i, 2, children[i as usize], 2));
+            [&[node(0, 6, 1, 3)][..], &halves].concat()
+        };
+        let good = [inner([4, 6, 8]), (0..6).map(leaf).collect()].concat();
+        assert!(is_tree(&good, &[3, 1, 2, 0, 5, 4]));
+        assert!(!is_tree(&good, &[0, 1, 2, 3, 4, 4]) && !is_tree(&good, &[0, 1, 2, 3, 4, 6]));
+        assert!(!is_tree(&good[..9], &[0, 1, 2, 3, 4, 5]));
+        let swapped = [inner([6, 4, 8]), [2, 3, 0, 1, 4, 5].map(leaf).to_vec()].concat();
+        assert!(!is_tree(&swapped, &[0, 1, 2, 3, 4, 5]));
+        let five = [vec![node(0, 5, 1, 5)], (0..5).map(leaf).collect()].concat();
+        assert!(!is_tree(&five, &[0, 1, 2, 3, 4]));
+        assert!(!is_tree(&[node(0, 1, 0, 1)], &[0]) && !is_tree(&[node(0, 1, 1, 1), leaf(0)], &[0]));
+    }
+
+    /// Which node of a pair is split is part of the format of pair trees.
+    #[test]
+    fn the_larger_inner_node_of_a_pair_is_split() {
+        let top = [node(0, 194, 1, 3), node(0, 65, 4, 2), node(65, 65, 6, 2), node(130, 64, 8, 2)];
+        let leaves = [(0, 33), (33, 32), (65, 33), (98, 32), (130, 32), (162, 32)];
+        let nodes = [&top[..], &leaves.map(|(first, count)| node(first, count, 0, 0))].concat();
+        let hierarchy = Hierarchy::from_parts(nodes, (0..194).collect(), 194).unwrap();
+        let split = |n, m| hierarchy.split(n, m).map(|split| split.pairs().collect::<Vec<_>>());
+        // Of two nodes of 65 triangles the first is split; never a leaf.
+        assert_eq!([split(1, 2), split(2, 1)], [Some(vec![(4, 2), (5, 2)]), Some(vec![(6, 1), (7, 1)])]);
+        assert_eq!([split(3, 1), split(3, 4)], [Some(vec![(3, 4), (3, 5)]), Some(vec![(8, 4), (9, 4)])]);
+        assert_eq!([split(4, 3), split(4, 5)], [Some(vec![(4, 8), (4, 9)]), None]);
+        assert!(
+            hierarchy.split_above_buckets(3, 4).is_none() && hierarchy.split_above_buckets(1, 4).is_some()
+        );
+    }
+}

@@ -135,3 +135,39 @@ impl ReducedModel {
         Ok(reach)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn faces_positions_and_modes_are_of_the_vertices() {
+        let mesh = |last| TriMesh::new(vec![DVec3::ZERO; 3], vec![[0, 1, last]]);
+        assert!(matches!(mesh(3), Err(Error::FaceIndex { vertex: 3, .. })));
+        let mesh = mesh(2).unwrap();
+        for count in 0..6 {
+            assert_eq!(mesh.with_rest_positions(vec![DVec3::X; count]).is_ok(), count == 3, "{count}");
+        }
+        for vertices in [2, 4] {
+            let modes = Modes::new(1, vec![DVec3::X; vertices]).unwrap();
+            assert!(matches!(ReducedModel::new(mesh.clone(), modes), Err(Error::VertexCount { .. })));
+        }
+    }
+
+    /// 2 r + 8 units in the last place remain for rounding.
+    #[test]
+    fn coordinates_end_before_rounding_leaves_the_range() {
+        let mesh = TriMesh::new(vec![DVec3::ZERO; 3], vec![[0, 1, 2]]).unwrap();
+        let modes = (0..15).map(|i| if i == 0 { DVec3::X } else { DVec3::ZERO }).collect();
+        let modes = Modes::new(5, modes).unwrap();
+        let model = ReducedModel::with_metric(mesh, modes, Metric::identity(5)).unwrap();
+        let at = |units: f64| {
+            let q = limits::LARGEST * (1.0 - units * f64::EPSILON);
+            model.check_coordinates(&[q, 0.0, 0.0, 0.0, 0.0])
+        };
+        assert!(at(19.0).is_ok());
+        for units in [17.0, 0.0, -1e9, -1e20] {
+            assert_eq!(at(units), Err(Error::CoordinatesRange), "{units}");
+        }
+    }
+}

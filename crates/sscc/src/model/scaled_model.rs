@@ -89,3 +89,55 @@ impl ScaledModel {
         &self.modes[vertex as usize * width..][..width]
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Modes, TriMesh};
+
+    fn is_near(found: f64, wanted: f64) -> bool {
+        wanted <= found && found <= wanted * (1.0 + 1e-12)
+    }
+
+    fn gamma(rank: usize) -> f64 {
+        let n = (2 * rank + 96) as f64 * (f64::EPSILON / 2.0);
+        n / (1.0 - n)
+    }
+
+    #[test]
+    fn rounding_bounds_have_twice_the_roundings_of_two_positions() {
+        for rank in [1, 7, 1000, 1 << 20] {
+            let bound = RoundingBound::new(DVec3::new(1.0, 2.0, 3.0), DVec3::new(4.0, 5.0, 6.0), rank);
+            let both = bound.between_configurations(10.0);
+            for (axis, dir) in [DVec3::X, DVec3::NEG_Y, DVec3::Z].into_iter().enumerate() {
+                let [rest, modes] = [1.0, 4.0].map(|first| (first + axis as f64) * 2.0 * gamma(rank));
+                assert!(is_near(bound.at_rest(dir), rest) && is_near(bound.per_norm(dir), modes), "{rank}");
+                assert!(is_near(both.at_rest(dir), 4.0 * (rest + 10.0 * modes)), "{rank}");
+                assert_eq!(both.per_norm(dir), bound.per_norm(dir));
+            }
+            // Underflow: four times the smallest number for each rounding, and the smallest normal number.
+            let least = f64::MIN_POSITIVE + (4 * (rank + 96)) as f64 * f64::from_bits(1);
+            let nothing = RoundingBound::new(DVec3::ZERO, DVec3::ZERO, rank).at_rest(DVec3::X);
+            assert!(is_near(nothing, least), "{rank}: {nothing:e}");
+        }
+    }
+
+    #[test]
+    fn reaches_are_those_of_sums_at_the_centre_and_of_rows_of_modes() {
+        let away = DVec3::new(0.0, 0.0, 900.0);
+        let mesh = TriMesh::new(vec![DVec3::new(1.0, -2.0, 4.0), away, away], vec![[0, 1, 2]]).unwrap();
+        let mut modes = vec![DVec3::ZERO; 6];
+        (modes[0], modes[1]) = (DVec3::new(3.0, 0.0, 100.0), DVec3::new(4.0, -10.0, 0.0));
+        let metric = Metric::identity(2);
+        let model = ReducedModel::with_metric(mesh, Modes::new(2, modes).unwrap(), metric.clone()).unwrap();
+        let scaled = ScaledModel::new(&model, &metric, &[10.0, -20.0]);
+        // The first vertex is at (-49, 198, 1004), by sums of (1, 2, 4), (30, 0, 1000) and (80, 200, 0).
+        let dirs = [DVec3::X, DVec3::Y, DVec3::Z];
+        for (dir, (rest, modes)) in dirs.into_iter().zip([(111.0, 5.0), (202.0, 10.0), (1004.0, 100.0)]) {
+            assert!(is_near(scaled.rounding.at_rest(dir), rest * 2.0 * gamma(2)), "{dir}");
+            assert!(is_near(scaled.rounding.per_norm(dir), modes * 2.0 * gamma(2)), "{dir}");
+        }
+        // The extents are 49, 198 and 104; twice the error counts.
+        assert!(is_near(scaled.keeping(1.0, 0.5).required.at_rest(), 199.0));
+    }
+}

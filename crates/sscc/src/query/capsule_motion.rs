@@ -143,6 +143,8 @@ mod tests {
     use crate::certificates::Scope;
     use crate::detect::layout::Needs;
     use crate::detect::node_volumes::NodeVolumes;
+    use crate::detect::vertex_motion::DeformedMotion;
+    use crate::query::widened_motion::WidenedMotion;
     use crate::test_models::{Random, strips};
     use crate::{ContactFilter, Modes, ReducedModel, TriMesh};
 
@@ -278,5 +280,36 @@ mod tests {
             }
         }
         assert!(checked > 10_000, "{checked}");
+    }
+
+    #[test]
+    fn motions_are_as_wide_as_their_widest_vertex_and_their_clearance() {
+        let (model, _) = strips(&mut Random(5), 2);
+        let (rank, scope) = (model.rank(), Scope::of(&model));
+        let hierarchy = Hierarchy::build(&model, &scope.metric);
+        let filter = crate::filter::PairFilter::new(&model, &ContactFilter::default());
+        let layout = Layout::new(&model, &hierarchy, &filter, Needs::LAZY);
+        let node = layout.buckets.node(0);
+        let scaled = ScaledModel::new(&model, &scope.metric, &scope.center);
+        let rates = CapsuleRates::new(&scaled, &hierarchy, &layout);
+        let q = vec![0.3; rank];
+        let reach = model.check_coordinates(&q).unwrap();
+        let capsule = CapsuleMotion::new(&rates, [&q, &q], 50.0, reach);
+        let changes = model.mesh().used_vertices().into_iter();
+        let changes = changes.map(|v| capsule.vertex_change(layout.vertices.index_of(v)));
+        assert_eq!(capsule.node_change(node), changes.fold(DVec3::ZERO, DVec3::max));
+        assert_eq!(capsule.rounding(), rounding_bound(reach, rank));
+
+        let deformed = DeformedMotion::new([&q[..]], reach);
+        let whole = deformed.overall_aabb(&layout);
+        let extent = (whole.upper - whole.lower).max_element();
+        assert!(extent > 0.25);
+        let widened = WidenedMotion::new(deformed, &layout, 0.25);
+        let margin = 0.125 + 4.0 * f64::from(f32::EPSILON) * extent;
+        assert_eq!([widened.margin(), widened.margin_beside_rounding()], [margin; 2]);
+        assert_eq!(widened.rounding(), deformed.rounding());
+        let [own, wide] =
+            [deformed.node_aabb(&layout, node), widened.node_aabb(&layout, node)].map(Option::unwrap);
+        assert_eq!((wide.lower, wide.upper), (own.lower - margin, own.upper + margin));
     }
 }

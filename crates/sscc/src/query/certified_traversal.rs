@@ -79,7 +79,10 @@ pub(super) fn traverse_certified<const E: usize, M: VertexMotion<E>, N: NarrowPh
 
 #[cfg(test)]
 mod tests {
+    use std::sync::Arc;
+
     use super::*;
+    use crate::certificates::{FactorScales, LocalBounds, LocalCertificates};
     use crate::detect::broad_phase::BroadPhase;
     use crate::detect::narrow_phase::DiscreteHits;
     use crate::detect::vertex_motion::DeformedMotion;
@@ -134,6 +137,52 @@ mod tests {
             } else {
                 assert_eq!(*closed, buckets);
             }
+        }
+    }
+
+    #[test]
+    fn nodes_and_pairs_without_a_proof_are_opened() {
+        let model = square();
+        let certificates = Certificates::compute(&model, &CertifyOptions::default().budget(0), &()).unwrap();
+        let query = Query::new(&model, &certificates).unwrap();
+        let context = &query.context;
+        let (hierarchy, parts) = (&*context.detect.hierarchy, certificates.parts());
+        let nodes = hierarchy.nodes();
+        let q = [6.0, 4.0];
+        let mut oracle = Query::with_method(&model, &certificates, Method::BruteForce).unwrap();
+        let all = oracle.discrete(&q).unwrap().to_vec();
+        let child_of =
+            |t: u32| nodes[0].children().position(|n| hierarchy.triangles(&nodes[n as usize]).contains(&t));
+        let within: Vec<_> = all.iter().copied().filter(|(a, b)| child_of(*a) == child_of(*b)).collect();
+        assert!(!within.is_empty() && within.len() < all.len());
+        // The certificate of the root proves nothing.
+        let local = LocalCertificates {
+            nodes: vec![0],
+            mode_starts: vec![0, 0],
+            bounds: vec![LocalBounds { ratio: f64::INFINITY, ..LocalBounds::default() }],
+            list_starts: vec![0, 0],
+            ..LocalCertificates::default()
+        };
+        let scales = FactorScales { sizes: vec![1.0; 2], scale: 1.0, reach: 1.0 };
+        let tables = LocalTables::new(&Arc::new(local), hierarchy, &[0.0; 2], scales).unwrap();
+        let motion = DeformedMotion::new([&q[..]], model.check_coordinates(&q).unwrap());
+        let norm = certificates.norm(&q).unwrap();
+        for (radius, expected) in [(0.0, &all), (f64::INFINITY, &within)] {
+            let parts = CertificateParts {
+                node_radii: vec![0.0; nodes.len()],
+                root_pair_radii: vec![radius; parts.root_pair_radii.len()],
+                ..parts.clone()
+            };
+            let mut proofs = LocalProofs::<1>::new(&tables);
+            assert!(proofs.begin(&tables, &motion));
+            proofs.prove(&tables, hierarchy, &parts.node_radii, norm);
+            assert!(proofs.is_complete() && !proofs.is_node_proven(&tables, 0));
+            let mut broad = BroadPhase::new(&context.detect.layout, true, None);
+            let mut narrow = DiscreteHits::default();
+            let mut search = broad.search(&context.detect, &motion, &mut narrow, usize::MAX);
+            traverse_certified(&mut search, Some((&mut proofs, &tables)), &parts, norm);
+            narrow.0.list.sort_unstable();
+            assert_eq!(&narrow.0.list, expected, "{radius}");
         }
     }
 }

@@ -122,5 +122,11 @@ mod tests {
             }
         }
         assert!(found > 100, "{found}");
+        let clearance = Clearance::new(0.05).unwrap();
+        let near = queries[0].within(&[0.5], &clearance).unwrap();
+        let mut near: Vec<Pair> = near.iter().map(|near| near.pair).collect();
+        near.sort_unstable();
+        assert!(near.len() > all.len());
+        assert_eq!(queries[0].near_between((0, 0), &[0.5], &clearance).unwrap(), near);
     }
 }

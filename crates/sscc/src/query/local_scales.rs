@@ -70,3 +70,28 @@ impl<'a> LocalScales<'a> {
         proofs.iter_mut().find_map(|(scale, proofs)| is_proven(proofs).then_some(*scale)).unwrap_or(0.0)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::test_models::square;
+    use crate::{Certificates, CertifyOptions, Modes, Query, ReducedModel};
+
+    #[test]
+    fn lines_begin_at_the_centre() {
+        // The mode stretches a square along x; nothing is left of it at -1.
+        let mesh = square(8);
+        let modes = mesh.rest_positions().iter().map(|p| p.with_y(0.0)).collect();
+        let model = ReducedModel::new(mesh, Modes::new(1, modes).unwrap()).unwrap();
+        let options = CertifyOptions::default().center(vec![0.5]).local_budget(1 << 20);
+        let certificates = Certificates::compute(&model, &options, &()).unwrap();
+        assert_eq!(certificates.parts().local.nodes.first(), Some(&0));
+        let mut query = Query::new(&model, &certificates).unwrap();
+        assert_eq!(query.measure(&[0.5]).unwrap().norm, 0.0);
+        let q = [-2.0];
+        let norm = query.measure(&q).unwrap().norm;
+        let mut scales = LocalScales::new(&query.context, &mut query.check, &q, norm, 0.7).unwrap();
+        let found = scales.of_pair((0, 0));
+        assert!(found < 0.6, "{found}");
+    }
+}

@@ -154,4 +154,17 @@ mod tests {
             assert_eq!(singular_value_bound(&[out_of_range; 18], 2), f64::INFINITY);
         }
     }
+
+    #[test]
+    fn rows_are_the_entries_of_each_mode_and_norms_are_rounded_up() {
+        let gradient: Vec<f32> = (0..32).map(|i| i as f32).collect();
+        let units = [1.0, 2.0, 4.0];
+        let entry = |e: usize, k: usize| if e < 8 { 8 * k + e } else { 24 + k };
+        let expected: Vec<f64> =
+            (0..9).flat_map(|e| (0..3).map(move |k| entry(e, k) as f64 * units[k])).collect();
+        assert_eq!(gradient_rows(&gradient, &units), expected);
+        for bound in [norm(&[3.0, 4.0]), singular_value_bound(&[3.0, 4.0], 1)] {
+            assert!((5.0..5.0 * (1.0 + 3e-6)).contains(&bound), "{bound}");
+        }
+    }
 }

@@ -247,3 +247,43 @@ impl LineAabbs {
         line.aabbs_separated_until(&self.nodes[n as usize], &self.nodes[m as usize])
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::certificates::CertificateParts;
+    use crate::test_models::{Random, square};
+    use crate::{Certificates, CertifyOptions, Method, Modes, Query, ReducedModel};
+
+    /// Nothing reaches the radii of the root's pairs; pairs within its children still end the scale.
+    #[test]
+    fn contacts_within_the_children_of_the_root_end_the_scale() {
+        let mut tight = 0;
+        for case in 0..6 {
+            let random = &mut Random(case + 40);
+            let mesh = square(12);
+            let modes = (0..mesh.rest_positions().len()).map(|_| random.vector()).collect();
+            let model = ReducedModel::new(mesh, Modes::new(1, modes).unwrap()).unwrap();
+            let options = CertifyOptions::default().local_budget(0).epsilon(0.5);
+            let honest = Certificates::compute(&model, &options, &()).unwrap();
+            let parts = honest.parts();
+            let root_pair_radii = vec![f64::INFINITY; parts.root_pair_radii.len()];
+            let edited =
+                Certificates::try_from(CertificateParts { root_pair_radii, ..parts.clone() }).unwrap();
+            let (hierarchy, nodes) = (&parts.hierarchy, parts.hierarchy.nodes());
+            let child_of = |t: u32| {
+                nodes[0].children().position(|n| hierarchy.triangles(&nodes[n as usize]).contains(&t))
+            };
+            let mut oracle = Query::with_method(&model, &honest, Method::BruteForce).unwrap();
+            let mut within = |t: f64| {
+                let pairs = oracle.discrete(&[t]).unwrap();
+                pairs.iter().filter(|(a, b)| child_of(*a) == child_of(*b)).count()
+            };
+            let scale = Query::new(&model, &edited).unwrap().safe_scale(&[1.0]).unwrap();
+            for share in [1.0, 0.99, 0.9, 0.7, 0.5] {
+                assert_eq!(within(share * scale), 0, "case {case}: {share} of {scale}");
+            }
+            tight += usize::from(within(1.05 * scale) > 0);
+        }
+        assert!(tight > 0);
+    }
+}

@@ -89,4 +89,22 @@ mod tests {
         ));
         assert!(matches!(query.discrete(&[1e300, 0.0, 0.0]), Err(Error::CoordinatesRange)));
     }
+
+    #[test]
+    fn the_reach_follows_the_lengths_of_modes() {
+        for size in [1e-3, 1.0, 1e3] {
+            let model = model([1.0, 1e3, 3e6].map(|x| x * size).to_vec());
+            let certificates = Certificates::compute(&model, &CertifyOptions::default(), &()).unwrap();
+            let query = Query::new(&model, &certificates).unwrap();
+            let ball = ValidBall::new(&query.context);
+            let scales = model.metric().scales();
+            let rates = scales.iter().enumerate().map(|(k, s)| model.mode_displacement_bound(k, 1.0) / s);
+            let expected = ball.radius * rates.map(|x| x.powi(2)).sum::<f64>().sqrt();
+            let moved = ball.reach - model.reach(&[0.0; 3]);
+            assert!(
+                expected > 0.0 && moved >= expected && moved < expected * (1.0 + 1e-6),
+                "{size}: {moved}"
+            );
+        }
+    }
 }

@@ -558,3 +558,21 @@ fn clearances_are_certified_in_shards() {
         assert!(sscc::parts::compute_in_shards(&model, &other, 3, &mut run, &()).is_err());
     }
 }
+
+#[test]
+fn exceptions_are_near_in_large_units() {
+    let at =
+        |x: f64, z: f64| [DVec3::ZERO, DVec3::X, DVec3::Y].map(|p| (p + DVec3::X * x + DVec3::Z * z) * 100.0);
+    let positions = [at(0.0, 0.0), at(0.0, 0.3), at(10.0, 0.0), at(10.0, 0.8)].concat();
+    let faces = (0..4).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
+    let modes = (0..12).map(|v| if v / 3 % 2 == 1 { DVec3::Z } else { DVec3::ZERO }).collect();
+    let mesh = TriMesh::new(positions, faces).unwrap();
+    let model = ReducedModel::new(mesh, Modes::new(1, modes).unwrap()).unwrap();
+    let clearance = Clearance::new(50.0).unwrap();
+    let options = CertifyOptions::default().clearance(clearance);
+    let certificates = Certificates::compute(&model, &options, &()).unwrap();
+    assert_eq!(certificates.exceptions(), [(0, 1)]);
+    let mut query = Query::new(&model, &certificates).unwrap();
+    let near: Vec<Pair> = query.within(&[0.0], &clearance).unwrap().iter().map(|near| near.pair).collect();
+    assert_eq!(near, [(0, 1)]);
+}

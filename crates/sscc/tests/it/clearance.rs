@@ -356,3 +356,43 @@ fn distances_at_q_are_those_of_the_positions() {
     }
     assert!(query.within(&[f64::NAN], &clearance).is_err());
 }
+
+#[test]
+fn the_nearest_pair_is_found_in_nodes_of_unequal_depth() {
+    // Triangles in a row: leaves have 64 consecutive ones. Number 192 and later ones are nearer by 0.5.
+    let row = |from: f64, count: u32| {
+        let at = |t: u32| from + f64::from(t) - if t >= 192 { 0.5 } else { 0.0 };
+        let corners = |t| [DVec3::ZERO, DVec3::X, DVec3::Y].map(|p| p * 0.125 + DVec3::X * at(t));
+        let faces = (0..count).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
+        TriMesh::new((0..count).flat_map(corners).collect(), faces).unwrap()
+    };
+    // Node 2 of the hierarchy has children, and node 3 is a leaf.
+    let mesh = row(0.0, 384);
+    let found = Detector::new(&mesh).nearest(mesh.rest_positions(), 1).unwrap().unwrap();
+    assert_eq!(found.pair, (191, 192));
+    let nearest = |one: &TriMesh, two: &TriMesh| {
+        let [mut x, mut y] = [one, two].map(Detector::new);
+        x.nearest_against(one.rest_positions(), &mut y, two.rest_positions()).unwrap().unwrap().pair
+    };
+    let (first, second, single) = (row(0.0, 190), row(190.25, 190), row(200.0, 1));
+    assert_eq!(nearest(&first, &second), (189, 0));
+    assert_eq!((nearest(&first, &single), nearest(&single, &first)), ((189, 0), (0, 189)));
+}
+
+#[test]
+fn rays_along_the_sides_of_boxes_are_counted() {
+    // A prism along x with rings of vertices at whole numbers. The third leaf begins at x = 21.
+    let ring = |k: u32| [[0.0, 0.0], [2.0, 0.0], [1.0, 2.0]].map(|[y, z]| DVec3::new(f64::from(k), y, z));
+    let mut faces = vec![[0, 1, 2], [92, 91, 90]];
+    for k in 0..30 {
+        for (i, j) in [(0, 1), (1, 2), (2, 0)] {
+            let [a, b, c, d] = [3 * k + i, 3 * k + 3 + i, 3 * k + 3 + j, 3 * k + j];
+            faces.extend([[a, b, c], [a, c, d]]);
+        }
+    }
+    let prism = TriMesh::new((0..=30).flat_map(ring).collect(), faces).unwrap();
+    let points = (1..30).flat_map(|k| [0.6, 1.4].map(|y| DVec3::new(f64::from(k), y, 0.5)));
+    let positions = points.flat_map(|p| [p, p + DVec3::Y * 0.01, p + DVec3::Z * 0.01]).collect();
+    let small = TriMesh::new(positions, (0..58).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect()).unwrap();
+    assert_eq!(inside(&prism, &small)[1], (58, 58));
+}

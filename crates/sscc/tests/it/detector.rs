@@ -254,6 +254,7 @@ fn batches_answer_as_single_frames_do() {
         let answers = detector.batch(&frames, threads, &()).unwrap();
         assert!(answers.iter().map(|answer| &answer.pairs).eq(&expected));
         let limited = detector.batch_at_most(&frames, 2, threads, &()).unwrap();
+        assert_eq!(limited.len(), expected.len());
         for (some, all) in limited.iter().zip(&expected) {
             assert_eq!(some.pairs.len(), all.len().min(2));
             assert!(some.pairs.iter().all(|pair| all.contains(pair)));

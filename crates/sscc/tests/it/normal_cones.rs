@@ -258,3 +258,16 @@ fn noise_invalidates_cones_and_hardly_changes_radii() {
     assert!((0.9..1.1).contains(&(rough_radius / radius)), "{radius} {rough_radius} {culled} {rough_culled}");
     assert!(rough_culled * 2 < culled, "{radius} {rough_radius} {culled} {rough_culled}");
 }
+
+#[test]
+fn no_method_lists_ignored_pairs() {
+    let corners = |z: f64| [DVec3::ZERO, DVec3::X, DVec3::new(0.2, 0.7, z)];
+    let p = [corners(0.0), corners(0.1)].concat();
+    let modes = Modes::new(1, p.clone()).unwrap();
+    let model = ReducedModel::new(TriMesh::new(p, vec![[0, 1, 2], [3, 4, 5]]).unwrap(), modes).unwrap();
+    for method in [Method::BruteForce, Method::Traditional, Method::BdTree, Method::NormalCones] {
+        assert_eq!(of(&model, ContactFilter::default(), method).discrete(&[0.0]).unwrap(), [(0, 1)]);
+        let ignoring = ContactFilter::default().ignoring([(1, 0)]);
+        assert_eq!(of(&model, ignoring, method).discrete(&[0.0]).unwrap(), []);
+    }
+}

@@ -2,10 +2,10 @@
 //! collide at rest.
 
 use glam::DVec3;
-use sscc::parts::{Scope, penetration_triangle_triangle, surroundings_between_meshes};
+use sscc::parts::{ProvenShares, Scope, penetration_triangle_triangle, surroundings_between_meshes};
 use sscc::{
     CancelToken, Certificates, CertifyOptions, ContactFilter, Detector, Error, Method, ModeRange, Modes,
-    Pair, Query, ReducedModel, TriMesh, WeightIntervals,
+    Pair, Query, ReducedModel, SweepOutcome, TriMesh, WeightIntervals,
 };
 use sscc_testing::{cases, threshold};
 
@@ -336,4 +336,39 @@ fn surroundings_of_rest_collisions_are_ignored() {
         left.push(expected.len());
     }
     assert!(left[0] > left[1] && left[1] >= left[2] && left[3] == 0, "{left:?}");
+}
+
+/// Two parallel triangles, apart by one unit in the last place, slide along each other.
+#[test]
+fn a_grazing_contact_is_no_collision() {
+    let p = [0.0, 2.0_f64.powi(-40)].map(|gap| {
+        [[0.0, 0.0, 0.0], [1.0, 0.0, 1.0], [0.0, 1.0, 0.0]]
+            .map(|[x, y, z]| DVec3::new(x, y, 4096.0 + z + gap))
+    });
+    let mesh = TriMesh::new(p.concat(), vec![[0, 1, 2], [3, 4, 5]]).unwrap();
+    let modes = (0..6).map(|v| if v < 3 { DVec3::ZERO } else { DVec3::Y }).collect();
+    let model = ReducedModel::new(mesh, Modes::new(1, modes).unwrap()).unwrap();
+    let mut query = Query::without_certificates(&model, Scope::of(&model), Method::BdTree).unwrap();
+    let outcome = query.sweep(&[0.0], 0, 0.5).unwrap().outcome;
+    assert_eq!(outcome, SweepOutcome::WithinTolerance);
+    let range = ModeRange { mode: 0, low: 0.0, high: 0.5 };
+    let found = query.sweep_intervals(&[0.0], &[range], 2, Some(1), &()).unwrap();
+    assert!(!found[0].intervals.is_empty());
+    assert!(found[0].intervals.iter().all(|i| i.pairs == 0 && !i.is_exact), "{found:?}");
+    assert!(query.sweep_modes(&[0.0], &[], None, &()).unwrap().is_empty());
+}
+
+#[test]
+fn a_pair_that_collides_at_the_centre_is_counted_and_not_proven() {
+    let crossing = [[0.25, 0.25, -0.5], [0.25, 0.375, 0.5], [0.375, 0.25, 0.5]].map(DVec3::from);
+    let p = [[DVec3::ZERO, DVec3::X, DVec3::Y], crossing].concat();
+    let mesh = TriMesh::new(p, vec![[0, 1, 2], [3, 4, 5]]).unwrap();
+    let modes = (0..6).map(|v| if v < 3 { DVec3::ZERO } else { DVec3::Z }).collect();
+    let model = ReducedModel::new(mesh, Modes::new(1, modes).unwrap()).unwrap();
+    let options = CertifyOptions::default().max_exceptions(0);
+    let certificates = Certificates::compute(&model, &options, &()).unwrap();
+    let mut query = Query::new(&model, &certificates).unwrap();
+    // |z| and the radius are 0.
+    assert_eq!(query.count(&[0.0]).unwrap(), 1);
+    assert_eq!(ProvenShares::of(&mut query, &[0.0]).unwrap().search, 1.0);
 }

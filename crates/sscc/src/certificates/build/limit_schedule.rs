@@ -180,4 +180,17 @@ mod tests {
         schedule.advance(false, count_below);
         assert_eq!(schedule.complete_below(), reached);
     }
+
+    #[test]
+    fn a_refused_limit_is_approached_by_halves_and_not_for_ever() {
+        let new = LimitSchedule::new(1.0, 16.0, usize::MAX).unwrap();
+        let mut schedule = LimitSchedule { complete_below: 0.25, limit: 1.0, ..new };
+        let next = |_| schedule.advance(false, |_| 1).then(|| schedule.limit());
+        let tried: Vec<f64> = (0..9).map_while(next).collect();
+        // The roots of 1/4 and 1/8; the next one is below 1.2 / 4.
+        assert!(
+            tried.len() == 2 && tried[0] == 0.5 && (tried[1] - 0.125_f64.sqrt()).abs() < 1e-6,
+            "{tried:?}"
+        );
+    }
 }

@@ -211,4 +211,31 @@ mod tests {
         }
         assert!(lowered >= 6, "{lowered}");
     }
+
+    #[test]
+    fn refused_rounds_change_nothing_and_a_full_budget_is_used() {
+        let model = ring(300, 3, 1.3);
+        let preparation = Preparation::new(&model, &CertifyOptions::default(), &()).unwrap();
+        let hierarchy = &preparation.hierarchy;
+        let mut executor = ThreadExecutor { preparation: &preparation, progress: &() };
+        let new = || PairTreeBuilder { bvtt: Bvtt::new(hierarchy), complete_below: 0.0, budget: 0 };
+        let limit = 0.5 * preparation.global_radius;
+        let round = |max_pairs| Round { limit, is_outer: false, max_pairs };
+        let mut whole = new();
+        assert!(whole.run_round(hierarchy, round(usize::MAX), &mut executor).unwrap());
+        let before = new().bvtt.pairs;
+        let added = whole.bvtt.pairs.len() - before.len();
+        assert!(added > 20, "{added}");
+        // With one pair too many the last stage is refused, with all the first.
+        for less in [1, 2, added / 8, added / 4, added / 2, added] {
+            let mut builder = new();
+            let max_pairs = before.len() + added - less;
+            assert!(!builder.run_round(hierarchy, round(max_pairs), &mut executor).unwrap(), "{less}");
+            assert!(builder.bvtt.pairs == before, "{less}");
+        }
+        let count = whole.bvtt.pairs.iter().filter(|pair| f64::from(pair.lower) < limit).count();
+        (whole.complete_below, whole.budget) = (limit, count);
+        let tree = whole.finish(hierarchy, &vec![0.0; hierarchy.nodes().len()]);
+        assert_eq!((tree.len(), tree.limit()), (count, limit));
+    }
 }

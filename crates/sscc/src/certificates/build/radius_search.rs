@@ -253,3 +253,44 @@ impl<'a> RadiusSearch<'a> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec3;
+
+    use super::*;
+    use crate::certificates::build::Preparation;
+    use crate::test_models::square;
+    use crate::{CertifyOptions, Metric, Modes, ReducedModel, TriMesh};
+
+    /// One large triangle above a sheet, which it reaches at |z| = 1: a leaf whose box is larger than those of inner nodes.
+    #[test]
+    fn pairs_of_a_leaf_and_a_smaller_inner_node_are_searched() {
+        let sheet = square(8);
+        let n = sheet.rest_positions().len() as u32;
+        let corners = [[-50.0, -50.0], [150.0, -50.0], [-50.0, 150.0]].map(|[x, y]| DVec3::new(x, y, 1.0));
+        let (positions, large) = ([sheet.rest_positions(), &corners].concat(), sheet.faces().len() as u32);
+        let faces = [sheet.faces(), &[[n, n + 1, n + 2]]].concat();
+        let modes = (0..n + 3).map(|v| if v < n { DVec3::ZERO } else { DVec3::NEG_Z }).collect();
+        let (mesh, modes) = (TriMesh::new(positions, faces).unwrap(), Modes::new(1, modes).unwrap());
+        let model = ReducedModel::with_metric(mesh, modes, Metric::identity(1)).unwrap();
+        let preparation = Preparation::new(&model, &CertifyOptions::default(), &()).unwrap();
+        let hierarchy = &preparation.hierarchy;
+        let mut search = preparation.search(&());
+        let has_large = |n: &u32| hierarchy.triangles(&hierarchy.nodes()[*n as usize]).contains(&large);
+        let (leaves, inner): (Vec<u32>, Vec<u32>) =
+            (0..hierarchy.nodes().len() as u32).partition(|n| hierarchy.nodes()[*n as usize].is_leaf());
+        let leaf = leaves.into_iter().find(has_large).unwrap();
+        let mut checked = 0;
+        for m in inner.into_iter().filter(|n| !has_large(n)) {
+            assert!(search.context.nodes.size(leaf) > search.context.nodes.size(m));
+            for nodes in [(leaf, m), (m, leaf)] {
+                let goal = SearchGoal::new(10.0, Precision::Full);
+                let bound = search.between(vec![BoundedNodePair::unbounded(nodes)], goal).unwrap();
+                assert!((0.8..=1.0).contains(&bound.radius), "{nodes:?}: {}", bound.radius);
+                checked += 1;
+            }
+        }
+        assert!(checked > 3, "{checked}");
+    }
+}

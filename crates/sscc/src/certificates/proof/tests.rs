@@ -105,3 +105,29 @@ fn proofs_can_be_cancelled_at_any_time() {
         );
     }
 }
+
+#[test]
+fn entries_without_a_pair_tree_have_the_radii_around_them() {
+    let options = CertifyOptions::default().budget(0).local_budget(0);
+    let certificates = Certificates::compute(&ring(60, 2, 0.9), &options, &()).unwrap();
+    let mut parts = certificates.parts().clone();
+    parts.node_radii.iter_mut().enumerate().for_each(|(n, radius)| *radius = 1.0 + n as f64);
+    parts.root_pair_radii.iter_mut().enumerate().for_each(|(i, radius)| *radius = 1e3 + i as f64);
+    let nodes = parts.hierarchy.nodes();
+    let range = |n: u32| {
+        let node = &nodes[n as usize];
+        node.first_triangle..node.first_triangle + node.triangle_count
+    };
+    let contains = |a: u32, n: u32| range(a).start <= range(n).start && range(n).end <= range(a).end;
+    let (mut of_root, mut others) = (0, 0);
+    for entry in proof_entries(&parts) {
+        let (n, m) = entry.nodes;
+        let around = (0..nodes.len() as u32).filter(|a| contains(*a, n) && contains(*a, m));
+        let around = around.map(|a| parts.node_radii[a as usize]).fold(0.0, f64::max);
+        let which = nodes[0].child_pairs().position(|pair| pair == entry.nodes);
+        let wanted = which.map_or(around, |which| parts.root_pair_radii[which]);
+        assert_eq!(entry.radius, wanted, "{n} {m}");
+        *(if which.is_some() { &mut of_root } else { &mut others }) += 1;
+    }
+    assert!(of_root == parts.root_pair_radii.len() && others > 10, "{of_root} {others}");
+}

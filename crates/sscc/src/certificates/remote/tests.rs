@@ -6,8 +6,9 @@ use super::job::{Job, JobWriter};
 use super::job_result::{JobResult, ResultLayout};
 use super::seal::HASH;
 use super::*;
-use crate::certificates::build::Task;
+use crate::certificates::build::{SplitTask, Task};
 use crate::certificates::test_models::ring;
+use crate::hierarchy::Hierarchy;
 use crate::{
     CancelToken, Certificates, CertifyOptions, ContactFilter, Error, Metric, MetricKind, ReducedModel,
 };
@@ -164,4 +165,20 @@ fn shards_can_be_cancelled() {
     let worker = ShardWorker::new(&model, &options, &()).unwrap();
     let (job, _) = &jobs(&model, &options, 2)[0];
     assert_eq!(worker.run(job, &CancelToken::when(|| true)), Err(Error::Cancelled));
+}
+
+#[test]
+fn jobs_of_nodes_that_do_not_exist_are_refused() {
+    let model = ring(20, 2, 0.4);
+    let hierarchy = Hierarchy::build(&model, model.metric());
+    let count = hierarchy.nodes().len() as u32;
+    let is_job = |nodes| {
+        let mut writer = JobWriter::new(1);
+        writer.add(&Task::Split(SplitTask { nodes, lower: 0.0, limit: 1.0, is_outer: false }));
+        Job::read(&hierarchy, &writer.into_bytes()).is_some()
+    };
+    assert!(is_job((0, count - 1)) && is_job((count - 1, 0)));
+    for bad in [(0, count), (count, 0), (1, 1), (count, count), (0, u32::MAX)] {
+        assert!(!is_job(bad), "{bad:?}");
+    }
 }

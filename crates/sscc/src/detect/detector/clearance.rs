@@ -185,3 +185,24 @@ impl Detector {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::TriMesh;
+
+    #[test]
+    fn clearances_of_any_size_and_incomplete_lists() {
+        for distance in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+            assert!(Clearance::new(distance).is_err(), "{distance}");
+        }
+        let plate = |x: f64| [DVec3::ZERO, DVec3::Y, DVec3::Z].map(|p| p * 1000.0 + DVec3::X * x);
+        let positions = [plate(0.0), plate(300.0)].concat();
+        let mesh = TriMesh::new(positions.clone(), vec![[0, 1, 2], [3, 4, 5]]).unwrap();
+        let mut detector = Detector::new(&mesh);
+        let clearance = Clearance::new(500.0).unwrap();
+        assert_eq!(detector.within(&positions, &clearance).unwrap().len(), 1);
+        let found = detector.within_at_most(&positions, &clearance, 0);
+        assert!(matches!(found, Err(Error::TooManyNearPairs { most: 0 })));
+    }
+}

@@ -102,3 +102,19 @@ fn signs_are_exact_for_mixed_magnitudes() {
         assert_eq!(orient2d(a, b, c), naive_2d(a, b, c), "{a:?} {b:?} {c:?}");
     }
 }
+
+#[test]
+fn error_bounds_contain_all_products() {
+    // Differences (3, 5, 11), (-7, 18, -13) and (17, -19, 23).
+    let corners = [DVec3::new(1.0, 2.0, 3.0), DVec3::new(4.0, 7.0, 14.0), DVec3::new(-6.0, 20.0, -10.0)];
+    let plane = Plane::through(&corners);
+    assert_eq!(plane.magnitude, DVec3::new(263.0, 116.0, 89.0));
+    let found = plane.estimate(&DVec3::new(18.0, -17.0, 26.0));
+    assert_eq!((found.det, found.error), (-1702.0, RELATIVE_3D * 8722.0 + ABSOLUTE_3D));
+    // The computed determinant has the wrong sign.
+    let (large, little) = ((1_u64 << 53) as f64, 1.0 / 128.0);
+    let a = DVec2::new(-(1.0 + little), -(16.0 + little));
+    let (b, c) = (DVec2::new(large, large - 12.0), DVec2::new(large - 2.0, large - 15.0));
+    assert!((b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x) > 0.0);
+    assert_eq!((orient2d(a, b, c), naive_2d(a, b, c)), (-1, -1));
+}

@@ -191,4 +191,22 @@ mod tests {
         let tiny_scale = Metric::from_scales(MetricKind::Given, vec![1e-200, 1.0]).unwrap();
         assert!(tiny_scale.length(&[1e-200, 0.0]) > 0.0);
     }
+
+    #[test]
+    fn norms_of_several_extreme_entries_hold_all_of_them() {
+        let dense = |s: f64| Metric::from_factor(MetricKind::Given, 2, vec![s, 0.0, 0.0, 1.0]).unwrap();
+        for metric in [Metric::identity(2), dense(1.0)] {
+            for x in [1e-250, 1e-170, 1e170, 1e300] {
+                let norm = metric.length(&[3.0 * x, 4.0 * x]);
+                assert!(norm >= 5.0 * x && norm <= 5.0 * x * (1.0 + 1e-12), "{x:e}: {norm:e}");
+            }
+            assert!(metric.norm(&[1.0]).is_err() && metric.norm(&[1.0; 3]).is_err());
+        }
+        // The product underflows, but the coordinate is not 0.
+        let norm = dense(2.0_f64.powi(-199)).length(&[1e-300, 0.0]);
+        assert!(norm > 0.0 && norm <= 1e-300, "{norm:e}");
+        for bad in [0.0, -1.0, f64::INFINITY, f64::NAN] {
+            assert!(Metric::from_scales(MetricKind::Given, vec![1.0, bad]).is_err(), "{bad}");
+        }
+    }
 }

@@ -227,3 +227,30 @@ fn the_rest_of_factors_is_within_its_error() {
     }
     assert!(worst[0] > 1e-3 && worst[1] > 1e-6, "{worst:?}");
 }
+
+#[test]
+fn error_bounds_are_those_of_their_terms() {
+    let part = |k: usize, n: f64, x: f64, z: f64, residual: f64| {
+        let factors = (0..3).map(|i| if i == k { n } else { 0.0 }).collect();
+        (factors, DMat3::from_diagonal(DVec3::new(x, 0.0, z)), residual)
+    };
+    let parts = vec![part(0, 2.0, 3.0, 4.0, 0.1), part(1, 4.0, 6.0, 8.0, 0.2), part(2, 0.5, 0.3, 0.4, 0.3)];
+    let mut free = AffineFree::default();
+    free.set([3.0, 5.0, 64.0].into_iter());
+    AffineModes::of_parts(parts).take_from(&mut free);
+    // The amounts are 6, 20 and 32, the norms of the maps 5, 10 and 0.5.
+    let unit = 10.0 * f64::EPSILON;
+    for (found, least) in [(free.error, 180.0 * unit), (free.map_error, 246.0 * unit), (free.length, 28.4)] {
+        assert!(found >= least && found <= least * (1.0 + 1e-9), "{found:e} {least:e}");
+    }
+    // A combination without residuals: what is left is the rounding bound.
+    let p = [[-1.0, -1.0, -1.0], [1.0, 1.0, 1.0], [1.0, -1.0, 1.0], [-1.0, 1.0, 0.5]].map(DVec3::from);
+    let modes = Modes::new(2, p.iter().flat_map(|p| [DVec3::X, DVec3::X * p.x]).collect()).unwrap();
+    let mesh = TriMesh::new(p.to_vec(), vec![[0, 1, 2], [1, 2, 3]]).unwrap();
+    let model = ReducedModel::new(mesh, modes).unwrap();
+    let patch = PatchModel::new(&model, &[0.0; 2]).unwrap();
+    let map = DMat3::from_diagonal(DVec3::new(3.0, 0.0, 0.0));
+    let found = residual(&patch, &[5.0, 3.0], (map, DVec3::X * 5.0));
+    let least = 8.0 * f64::EPSILON * (2.0 + 16.0) * (8.0 + 3.0 + 5.0);
+    assert!(found >= least && found < 1.02 * least, "{found:e} {least:e}");
+}

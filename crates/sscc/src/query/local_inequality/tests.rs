@@ -635,3 +635,21 @@ fn factors_below_single_precision_still_have_strain() {
     let found = allowed(&certificate.local, 1, [&f[..]]);
     assert!(found > 0.0 && holds(&certificate, found, &f), "{found:e}");
 }
+
+/// The patch does not move with the first mode. What is left of its factors without the affine part is rounding alone.
+#[test]
+fn factors_without_their_affine_part_are_not_below_zero() {
+    let mut certificate = certificate(vec![DMat3::ZERO; 2], vec![vec![1.0, 0.0], vec![0.0, 1.0]]);
+    certificate.local.bounds[0].per_factor = 1e8;
+    let found = [0, 1].map(|others| {
+        let mut local = certificate.local.clone();
+        local.modes.iter_mut().for_each(|k| *k += others as u32);
+        let with = |x: f64, y: f64| [vec![0.0; others], vec![x, y]].concat();
+        let (mut tables, _) = tables_of(&local, &vec![0.0; 2 + others], &Metric::identity(2 + others));
+        tables.affine = Some(AffineModes::of_parts(vec![(with(0.6, 0.8), DMat3::ZERO, 0.0)]));
+        let (f, mut inequality) = (with(6e5, 8e5), LocalInequality::<1>::new());
+        assert!(inequality.set_motion(&tables, &DeformedMotion::new([&f[..]], 0.0)));
+        inequality.allowed(&tables, 0)
+    });
+    assert!(found[0] > 0.0 && found[0] == found[1], "{found:?}");
+}

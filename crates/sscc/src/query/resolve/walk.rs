@@ -199,7 +199,7 @@ mod tests {
     use super::*;
     use crate::parts::Scope;
     use crate::test_models::square;
-    use crate::{Method, Modes, ReducedModel, TriMesh};
+    use crate::{Method, Modes, ReducedModel, ResolveOptions, TriMesh};
 
     /// The whole step and its first half have more impacts than a query lists; its first quarter has none, which is no proof for
     /// the rest.
@@ -218,9 +218,33 @@ mod tests {
         let model = ReducedModel::new(mesh, Modes::new(1, modes).unwrap()).unwrap();
         let mut query = Query::without_certificates(&model, Scope::of(&model), Method::Traditional).unwrap();
         assert!(query.continuous(&[0.0], &[1.0]).unwrap().len() > MAX_IMPACTS);
+        // The first quarter of the second step ends just before the contact.
+        for target in [[2.0], [3.8]] {
+            let mut walk = Walk::new(&mut query, &target, vec![0.0], true);
+            walk.step(1e-3).unwrap();
+            let q = walk.into_configuration();
+            assert!(q[0] > 0.0 && q[0] < 1.0, "{target:?} {q:?}");
+        }
+    }
+
+    /// All triangles are horizontal: only at the heights 1 and 3 does anything collide.
+    #[test]
+    fn no_path_passes_a_contact_at_one_time() {
+        let small = [DVec3::ZERO, DVec3::X * 0.1, DVec3::Y * 0.1];
+        let plate = |z: f64| [[-4.0, -4.0], [4.0, -4.0], [0.0, 6.0]].map(|[x, y]| DVec3::new(x, y, z));
+        let p = [small, plate(1.0), plate(3.0)].concat();
+        let mesh = TriMesh::new(p, vec![[0, 1, 2], [3, 4, 5], [6, 7, 8]]).unwrap();
+        let modes = (0..9).map(|v| if v < 3 { DVec3::Z } else { DVec3::ZERO }).collect();
+        let model = ReducedModel::new(mesh, Modes::new(1, modes).unwrap()).unwrap();
+        let mut query = Query::without_certificates(&model, Scope::of(&model), Method::Traditional).unwrap();
+        for start in [None, Some(vec![0.5])] {
+            let q = query.resolve(&[3.0], &ResolveOptions::default().start(start)).unwrap().q.unwrap();
+            assert!(q[0] > 0.9 && q[0] < 1.0, "{q:?}");
+        }
+        // The end of this part is at the contact.
         let mut walk = Walk::new(&mut query, &[2.0], vec![0.0], true);
-        walk.step(1e-3).unwrap();
+        walk.go_part(&[2.0], 0.5).unwrap();
         let q = walk.into_configuration();
-        assert!(q[0] > 0.0 && q[0] < 1.0, "{q:?}");
+        assert!(q[0] > 0.999 && q[0] < 1.0, "{q:?}");
     }
 }

@@ -170,3 +170,11 @@ fn maps_out_of_range_have_no_stretches() {
         }
     }
 }
+
+/// A quarter turn, whose smallest stretch is lost in the rounding of its square.
+#[test]
+fn what_is_lost_is_subtracted() {
+    let map = DMat3::from_cols_array(&[1e-9, 1.0, 0.0, -1.0, 1e-9, 0.0, 0.0, 0.0, 1e-9]);
+    let found = smallest_eigenvalue(&map);
+    assert!(found < 1e-9 - 1.4e-14 && found > 1e-9 - 1.6e-14, "{found:e}");
+}

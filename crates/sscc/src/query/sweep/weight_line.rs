@@ -274,4 +274,14 @@ mod tests {
         }
         assert_eq!((forward(0.0, 0.25, 1.0), forward(0.0, 0.25, -1.0)), (0.25, -0.25));
     }
+
+    #[test]
+    fn the_slack_counts_the_later_modes_that_move() {
+        let (model, _) = strips(&mut Random(1), 3);
+        let line = WeightLine::new(&model, &[1.0, 2.0, 0.0, 3.0], 1);
+        // The product, the sum of the mode, and that of one later mode.
+        let (slack, least) = (line.slack([1.0, 0.5]), 4.0 * 3.0 * (f64::EPSILON / 2.0));
+        assert!(slack >= least && slack <= least * (1.0 + 1e-8), "{slack:e}");
+        assert!(line.slack([0.0; 2]) > 0.0);
+    }
 }

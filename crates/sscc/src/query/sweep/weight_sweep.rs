@@ -225,3 +225,66 @@ impl WeightSweep<'_> {
         Ok(blocking.map_or(Step::Free, |pair| Step::Blocked(end, pair)))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec3;
+
+    use super::*;
+    use crate::certificates::Scope;
+    use crate::{Method, Modes, ReducedModel, TriMesh};
+
+    /// Returns a small triangle, which the mode moves, and large ones at these heights.
+    fn plates(small: [DVec3; 3], way: DVec3, heights: &[f64]) -> ReducedModel {
+        let plate = |z: f64| [[-4.0, -4.0], [4.0, -4.0], [0.0, 6.0]].map(|[x, y]| DVec3::new(x, y, z));
+        let p: Vec<DVec3> = small.into_iter().chain(heights.iter().flat_map(|z| plate(*z))).collect();
+        let faces = (0..p.len() as u32 / 3).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
+        let modes = (0..p.len()).map(|v| if v < 3 { way } else { DVec3::ZERO }).collect();
+        ReducedModel::new(TriMesh::new(p, faces).unwrap(), Modes::new(1, modes).unwrap()).unwrap()
+    }
+
+    fn query(model: &ReducedModel) -> Query {
+        Query::without_certificates(model, Scope::of(model), Method::Traditional).unwrap()
+    }
+
+    /// Returns a sweep that has proven its first weight alone.
+    fn begun(query: &mut Query, from: f64, to: f64) -> WeightSweep<'_> {
+        let model = query.context.model.clone();
+        let (range, work) = ((to - from).abs(), Work::of_mesh(model.mesh().faces().len()));
+        let outcome = SweepOutcome::Free;
+        let sweep =
+            Sweep { mode: 0, from, to, first_free: Some(from), first_hit: None, pairs: Vec::new(), outcome };
+        let line = WeightLine::new(&model, &[from], 0);
+        WeightSweep { query, line, sweep, range, bracket: BRACKET * range, work }
+    }
+
+    #[test]
+    fn probes_find_the_nearest_collision_within_the_range() {
+        // It meets a plate over 1/16 before the plate's height. Probes are 1/8 apart.
+        let small = [DVec3::ZERO, DVec3::X * 0.1, DVec3::new(0.0, 0.05, 0.0625)];
+        for (from, to, heights, hit) in [
+            (0.5, 4.5, &[1.65, 3.15][..], Some(1.625)),
+            (-2.0, 2.0, &[-0.85, 1.15], Some(-0.875)),
+            (8.0, 12.0, &[13.0, 16.0, 136.0], None),
+        ] {
+            let mut query = query(&plates(small, DVec3::Z, heights));
+            let mut sweep = begun(&mut query, from, to);
+            sweep.probe().unwrap();
+            assert_eq!(sweep.sweep.first_hit, hit, "{from} {to}");
+        }
+    }
+
+    #[test]
+    fn pairs_within_the_tolerance_are_a_contact() {
+        let within = (SweepOutcome::WithinTolerance, Some(0.25));
+        let beyond = (SweepOutcome::TooClose((0, 1)), None);
+        for (exponent, expected) in [(-38, within), (-36, beyond)] {
+            let gap = DVec3::Z * 2.0_f64.powi(exponent);
+            let small = [DVec3::ZERO, DVec3::X * 0.1, DVec3::Y * 0.05].map(|p| p + gap);
+            let mut query = query(&plates(small, DVec3::X, &[0.0]));
+            let mut sweep = begun(&mut query, 0.0, 1.0);
+            sweep.close_contact((0, 1), 0.25).unwrap();
+            assert_eq!((sweep.sweep.outcome, sweep.sweep.first_hit), expected);
+        }
+    }
+}

@@ -105,3 +105,16 @@ fn modes_that_move_other_triangles_change_no_half_space() {
     }
     assert!(added > 1000 && violated > 1000, "{added} {violated}");
 }
+
+/// Only the first corner of one triangle moves.
+#[test]
+fn half_spaces_of_a_single_entry_are_those_of_its_corner() {
+    let p = [DVec3::ZERO, DVec3::Z].map(|p| [p, p + DVec3::X, p + DVec3::Y]).concat();
+    let modes = (0..6).map(|v| if v == 0 { DVec3::Z } else { DVec3::ZERO }).collect();
+    let mesh = TriMesh::new(p, vec![[0, 1, 2], [3, 4, 5]]).unwrap();
+    let model = ReducedModel::with_metric(mesh, Modes::new(1, modes).unwrap(), Metric::identity(1)).unwrap();
+    let query = Query::without_certificates(&model, Scope::of(&model), Method::BruteForce).unwrap();
+    let mut separations = Separations::new(1);
+    assert!(separations.add(&query.context, &[0.0], (0, 1), 0.25));
+    assert!((separations.allowed_share(&[3.0]) - 0.25).abs() < 1e-3);
+}
