@@ -17,7 +17,7 @@ const REACHED: [(&str, &str); 9] = [
     ("moving-pairs", "proven free"),
     ("discrete", "proof by search"),
     ("kinetic", "searches"),
-    ("continuous", "pairs proven free"),
+    ("continuous", "pairs attacked"),
     ("posed", "two meshes"),
     ("frames", "swept"),
 ];
