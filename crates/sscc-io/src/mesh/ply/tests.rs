@@ -259,6 +259,8 @@ fn rows_of_another_length_name_their_line() {
     let message = |rows: &str| parse(with_element(faces, rows).as_bytes()).unwrap_err().to_string();
     let more = "this row has more values than the header declares";
     assert_eq!(message("3 0 1 2 3 255 0 0\n3 3 4 5 3 255 0 0\n"), format!("line 17: {more}"));
+    // Read as rows, the numbers left over begin with a face of one corner.
+    assert_eq!(message("3 0 1 2 3 1 0 0\n3 3 4 5 3 1 0 0\n"), format!("line 17: {more}"));
     assert_eq!(message("3 0 1 2 3\n3 3 4 5 3 9\n"), format!("line 18: {more}"));
     assert_eq!(message("3 0 1 2\n3 3 4 5\n"), "line 17: this row has fewer values than the header declares");
     // Rows in one line, and over several ones, are read if the count of all numbers fits.

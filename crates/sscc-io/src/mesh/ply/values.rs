@@ -74,10 +74,10 @@ impl<'a> Values<'a> {
         Ok(value)
     }
 
-    /// Returns the cause of an error of the rows: if the numbers did not suffice, or some were left over, the first row that
-    /// is not a line of its own. Such rows are valid, so they cause no other errors.
+    /// Returns the cause of an error of the rows: if the numbers did not suffice, some were left over, or the row of the error
+    /// begins within a line, the first row that is not a line of its own. Such rows are valid, so they cause no other errors.
     pub fn cause_of(&self, error: FormatError) -> FormatError {
-        match self.uneven.filter(|_| self.is_miscounted) {
+        match self.uneven.filter(|_| self.is_miscounted || !self.row_begins_line()) {
             Some((line, what)) => {
                 FormatError::line(line, format!("this row has {what} values than the header declares"))
             }
