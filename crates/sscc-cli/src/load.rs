@@ -7,7 +7,7 @@ use anyhow::{Context, Error, Result, bail, ensure};
 use sscc::parts::check_models;
 use sscc::{Certificates, CertifyOptions, ReducedModel};
 use sscc_io::{
-    IoError, LoadOptions, LoadedModel, Setting, check_writable, folder, has_file, is_folder_of_mesh,
+    IoError, LoadOptions, LoadedModel, Setting, check_replaceable, has_file, is_folder_of_mesh,
 };
 use sscc_tasks::{CertificateRequest, GroupRules, Scheme, TaskError, available_threads, read_configuration};
 
@@ -102,7 +102,7 @@ pub fn in_file(error: Error, path: &Path) -> Error {
 }
 
 /// Refuses an unusable output before any long work: one with another ending, one that is an input, a file of an input or no file,
-/// one in a folder that cannot be written to, and a new mesh in the folder of an input, which would be read in the next run.
+/// one that is read-only or in a folder that cannot be written to, and a new mesh in the folder of an input, which would be read in the next run.
 pub fn check_output(output: &Path, ending: &str, inputs: &[&Path]) -> Result<()> {
     let shown = output.display();
     let file_name = output.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
@@ -121,6 +121,6 @@ pub fn check_output(output: &Path, ending: &str, inputs: &[&Path]) -> Result<()>
             input.display()
         );
     }
-    check_writable(folder(output)).with_context(|| format!("{shown}: cannot be written"))?;
+    check_replaceable(output)?;
     Ok(())
 }

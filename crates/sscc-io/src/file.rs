@@ -83,6 +83,14 @@ pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), IoError> {
     file.finish()
 }
 
+/// Checks that a file can be written by [`write_whole`], before long work whose result it holds.
+///
+/// # Errors
+/// As [`write_whole`].
+pub fn check_replaceable(path: &Path) -> Result<(), IoError> {
+    WholeFile::create(path).map(drop)
+}
+
 /// A file that is written in parts, and replaces its target when it is complete: see [`write_whole`].
 pub(crate) struct WholeFile {
     /// The path in messages.
@@ -312,6 +320,7 @@ mod tests {
         fs::write(&path, b"old").unwrap();
         set_mode(0o444);
         let refused = write_whole(&path, b"new").unwrap_err().to_string();
+        assert_eq!(check_replaceable(&path).unwrap_err().to_string(), refused);
         let end = "x.npy: cannot be written: it is read-only: make it writable, or choose another name";
         assert!(refused.ends_with(end), "{refused}");
         assert_eq!((fs::read(&path).unwrap(), mode()), (b"old".to_vec(), 0o444));
