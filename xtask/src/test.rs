@@ -1,5 +1,5 @@
-//! `cargo xtask test`: runs all tests of all crates with the examples in their documentation, then at the same time those of
-//! the Python package, of the page, of the site and of C, and the lemmas, since none of these keeps two cores busy. With
+//! `cargo xtask test`: runs all tests of all crates with the examples in their documentation, and at the same time those of
+//! the site and the page, and the lemmas; then those of the Python package and of C. None of these keeps two cores busy. With
 //! arguments for `cargo test` it runs only the tests of the crates. The package for npm has its own task,
 //! `cargo xtask wasm --test`.
 //!
@@ -10,24 +10,32 @@ use std::path::Path;
 use std::process::ExitCode;
 use std::thread;
 
-use crate::program::{cargo, run_and_forward};
+use crate::program::{cargo, run_and_forward, succeed};
 use crate::tally::{SkipLog, Tally};
 use crate::{c, lemmas, page, python, site};
 
 /// Runs all tests. With arguments for `cargo test`, runs only those of the crates.
 pub fn run(arguments: &[String]) -> ExitCode {
     let log = SkipLog::new();
-    let mut tally = cargo_test(arguments, log.path());
-    if arguments.is_empty() {
-        let path = log.path();
-        tally += thread::scope(|scope| {
-            let page = scope.spawn(|| site::test(path) + page::test(path, true) + lemmas::test(path, true));
-            let c = scope.spawn(|| c::test(path, true));
-            let python = python::test(&[], path, true);
-            [page, c].into_iter().fold(python, |sum, tests| sum + tests.join().unwrap_or(Tally::BROKEN))
-        });
-    }
+    let tally = if arguments.is_empty() { test_all(log.path()) } else { cargo_test(arguments, log.path()) };
     log.conclude(tally)
+}
+
+fn test_all(log: &Path) -> Tally {
+    // All programs are compiled before any of them runs, because the compiler keeps all cores busy.
+    let mut compile = cargo();
+    compile.args(["test", "--workspace", "--no-run"]);
+    if let Err(line) = succeed(&mut compile, "the tests cannot be compiled") {
+        println!("error: {line}");
+        return Tally::BROKEN;
+    }
+    thread::scope(|scope| {
+        let page = scope.spawn(|| site::test(log) + page::test(log, true) + lemmas::test(log, true));
+        let crates = cargo_test(&[], log);
+        let c = scope.spawn(|| c::test(log, true));
+        let others = crates + python::test(&[], log, true);
+        [page, c].into_iter().fold(others, |sum, tests| sum + tests.join().unwrap_or(Tally::BROKEN))
+    })
 }
 
 fn cargo_test(arguments: &[String], log: &Path) -> Tally {

@@ -6,9 +6,7 @@ use std::path::Path;
 use anyhow::{Context, Error, Result, bail, ensure};
 use sscc::parts::check_models;
 use sscc::{Certificates, CertifyOptions, ReducedModel};
-use sscc_io::{
-    IoError, LoadOptions, LoadedModel, Setting, check_replaceable, has_file, is_folder_of_mesh,
-};
+use sscc_io::{IoError, LoadOptions, LoadedModel, Setting, check_replaceable, has_file, is_folder_of_mesh};
 use sscc_tasks::{CertificateRequest, GroupRules, Scheme, TaskError, available_threads, read_configuration};
 
 use crate::output::{note, warn};
