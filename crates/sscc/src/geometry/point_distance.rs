@@ -21,3 +21,15 @@ pub(crate) fn distance_point_triangle(point: DVec3, [a, b, c]: &[DVec3; 3]) -> f
     let inside = if is_inside { (w - u * beta - v * gamma).length_squared() } else { f64::INFINITY };
     edges.min(inside).sqrt()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn points_beyond_the_third_edge_are_at_its_distance() {
+        let triangle = [DVec3::ZERO, DVec3::X, DVec3::Y];
+        assert_eq!(distance_point_triangle(DVec3::ONE, &triangle), 1.5_f64.sqrt());
+        assert_eq!(distance_point_triangle(DVec3::new(0.25, 0.25, 1.0), &triangle), 1.0);
+    }
+}

@@ -386,3 +386,85 @@ fn open_meshes_have_no_volume() {
     let found = body_penetration([&mut cancelled, &mut Detector::new(&unit)], [at, at]);
     assert_eq!(found, Err(Error::Cancelled));
 }
+
+/// Returns one mesh of several; those with `true` are turned inside out.
+fn merged(parts: &[(&TriMesh, bool)]) -> TriMesh {
+    let (mut positions, mut faces): (Vec<DVec3>, Vec<[u32; 3]>) = (Vec::new(), Vec::new());
+    for (mesh, is_inverted) in parts {
+        let first = positions.len() as u32;
+        positions.extend_from_slice(mesh.rest_positions());
+        for &[a, b, c] in mesh.faces() {
+            let face = if *is_inverted { [a, c, b] } else { [a, b, c] };
+            faces.push(face.map(|v| v + first));
+        }
+    }
+    TriMesh::new(positions, faces).unwrap()
+}
+
+#[test]
+fn every_part_is_closed_and_faces_one_way() {
+    let unit = cuboid(DVec3::ZERO, DVec3::ONE);
+    let corners = [[0.2, 3.0, 0.2], [0.8, 3.0, 0.2], [0.5, 4.0, 0.5]].map(DVec3::from_array).to_vec();
+    let other = cuboid(DVec3::new(0.75, 0.0, 0.0), DVec3::new(1.75, 1.0, 1.0));
+    // A closed part beside an open one.
+    let single = TriMesh::new(corners.clone(), vec![[0, 1, 2]]).unwrap();
+    assert_eq!(find(&merged(&[(&unit, false), (&single, false)]), &other), Err(Error::OpenMesh("first")));
+    // A doubled triangle has volume 0 and error 0: it does not face outward in a mesh that faces inward.
+    let doubled = TriMesh::new(corners, vec![[0, 1, 2], [0, 2, 1]]).unwrap();
+    check(&merged(&[(&unit, true), (&doubled, false)]), &other, 0.25, 0.25);
+    // A small part that faces inward, in meshes of any size, and far away.
+    for (size, at) in [(1.0, 3.0), (2.0_f64.powi(-40), 3.0), (1.0, 1e5)] {
+        let large = cuboid(DVec3::ZERO, DVec3::splat(2.0 * size));
+        let small = cuboid(DVec3::splat(at * size), DVec3::splat((at + 1.0) * size));
+        let mixed = merged(&[(&large, false), (&small, true)]);
+        let found = find(&mixed, &cuboid(DVec3::ZERO, DVec3::splat(size)));
+        assert_eq!(found, Err(Error::OpenMesh("first")), "{size} {at}");
+    }
+    // A pit: two of its twelve triangles are in a face of the cube; the others tell where it is.
+    let cube = cuboid(DVec3::ZERO, DVec3::splat(4.0));
+    let pit = cuboid(DVec3::ONE, DVec3::new(2.0, 2.0, 4.0));
+    let around = cuboid(DVec3::splat(-1.0), DVec3::splat(5.0));
+    let found = find(&merged(&[(&cube, false), (&pit, true)]), &around).unwrap();
+    assert!((found.volume - 61.0).abs() <= found.volume_error + 1e-12, "{found:?}");
+}
+
+#[test]
+fn bounds_of_balls_are_those_of_formulas() {
+    // The ball in a tetrahedron is off the centre of its box, and distances are much larger than 1.
+    let corners = [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z].map(|p| p * 16.0).to_vec();
+    let tet = TriMesh::new(corners, vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]).unwrap();
+    let around = cuboid(DVec3::splat(-16.0), DVec3::splat(32.0));
+    check(&tet, &around, 4096.0 / 6.0, 32.0 / (3.0 + 3.0_f64.sqrt()));
+    // Bodies that touch: a ball has at most the volume and its error.
+    let unit = cuboid(DVec3::ZERO, DVec3::ONE);
+    let found = find(&unit, &cuboid(DVec3::X, DVec3::ONE + DVec3::X)).unwrap();
+    let largest = (0.75 * (found.volume + found.volume_error) / std::f64::consts::PI).cbrt();
+    assert!(found.depth == 0.0 && found.volume_error > 0.0, "{found:?}");
+    assert_eq!(found.depth_error, 2.0 * largest);
+    // Errors of tiny bodies are rounded up.
+    let tiny = |from: f64| {
+        let size = 2.0_f64.powi(-1000);
+        cuboid(DVec3::splat(from * size), DVec3::splat((from + 1.0) * size))
+    };
+    let found = find(&tiny(0.0), &tiny(3.0)).unwrap();
+    assert_eq!([found.volume_error, found.depth_error], [f64::from_bits(1); 2]);
+    // Bodies that are the origin alone.
+    let point = cuboid(DVec3::ZERO, DVec3::ZERO);
+    assert_eq!(find(&point, &point), Ok(BodyPenetration::default()));
+}
+
+/// Triangles of the ball end at x = 0 and y = 0, so nodes do as well; rays count as moved to +x and +y.
+#[test]
+fn components_below_the_sides_of_nodes_are_inside() {
+    let shell = ball(DVec3::ZERO, 1.0, 3);
+    let mut outer = Detector::new(&shell);
+    for x in [-0.3, 0.0, 0.3] {
+        for y in [-0.3, 0.0, 0.3] {
+            let lower = DVec3::new(x, y, 0.0);
+            let small = cuboid(lower, lower + DVec3::splat(0.05));
+            let mut inner = Detector::new(&small);
+            let found = outer.enclosed(shell.rest_positions(), &mut inner, small.rest_positions()).unwrap();
+            assert_eq!(found.map(|side| side.inside), [0, 1], "{lower}");
+        }
+    }
+}

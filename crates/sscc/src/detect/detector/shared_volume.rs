@@ -110,4 +110,16 @@ mod tests {
         assert!(checks > 20, "{checks}");
         assert_eq!(sum(5), (Err(Error::Cancelled), 6));
     }
+
+    #[test]
+    fn the_error_of_a_sum_is_that_of_its_terms_and_of_its_rounding() {
+        // Heights 1 + x + y and the opposite; the shared box has its centre at 0.
+        let at = |z: f64| [[-1.0, -1.0, -z], [1.0, -1.0, z], [-1.0, 1.0, z]].map(DVec3::from_array);
+        let (a, b) = (vec![at(1.0)], vec![at(-1.0)]);
+        let term = overlap_integral(&a[0], &b[0]);
+        let size = term.value.abs();
+        assert!(size > 0.1);
+        let found = shared_volume([&a, &b], term.value.signum(), None);
+        assert_eq!(found, Ok((size, term.error + f64::EPSILON * size)));
+    }
 }

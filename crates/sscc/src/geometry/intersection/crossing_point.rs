@@ -162,3 +162,42 @@ fn sorted<const N: usize>(mut points: [DVec3; N]) -> [DVec3; N] {
     points.sort_by(|p, q| lexicographic(*q, *p).cmp(&lexicographic(*p, *q)));
     points
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn double_doubles_are_used_where_their_digits_suffice() {
+        // The plane x + y + z = 0; p and q are `lift` beside it, on both sides.
+        let points = |lift: f64, scale: f64| {
+            let [p, q] = [lift, -lift].map(|lift| DVec3::new(1.0, 1.0, lift - 2.0));
+            let (r, s) = (DVec3::new(1.0, 0.0, -1.0), DVec3::new(0.0, 1.0, -1.0));
+            [DVec3::ZERO, p, q, r, s].map(|x| x * scale)
+        };
+        let (wide, narrow) = (2.0_f64.powi(-30), 2.0_f64.powi(-51));
+        for scale in [1.0, 2.0_f64.powi(20), 2.0_f64.powi(-20)] {
+            assert_eq!(weights(points(wide, scale), None), Some([0.5; 2]), "{scale}");
+            assert_eq!(weights(points(narrow, scale), None), None, "{scale}");
+            assert_eq!(exact_weights(points(narrow, scale), None), Some([0.5; 2]), "{scale}");
+        }
+        // Products of these coordinates may underflow.
+        assert_eq!(weights(points(wide, 2.0_f64.powi(-250)), None), None);
+    }
+
+    #[test]
+    fn crossings_are_computed_from_the_nearer_end_of_the_shorter_edge() {
+        let around = [DVec3::splat(-9.0), DVec3::splat(9.0)];
+        let near = interpolate([DVec3::ZERO, DVec3::ONE], [1e-30, 1.0], &around);
+        assert_eq!(near, DVec3::splat(1e-30));
+        // Along the long edge, the crossing would be rounded to 0.
+        for scale in [1.0, 2.0_f64.powi(-600)] {
+            let h = 2.0_f64.powi(-60);
+            let long = [DVec3::NEG_X, DVec3::X].map(|p| p * scale);
+            let short = [DVec3::new(0.0, -h, 0.0), DVec3::new(3.0 * h, h, 0.0)].map(|p| p * scale);
+            let expected = DVec3::X * (1.5 * h * scale);
+            assert_eq!(cross_edge_edge(long, short), expected, "{scale}");
+            assert_eq!(cross_edge_edge(short, long), expected, "{scale}");
+        }
+    }
+}

@@ -94,3 +94,30 @@ fn exact_normal(corners: &[DVec3; 3]) -> DVec3 {
     let excess = normal.iter().map(BigInt::bits).max().unwrap_or(0).saturating_sub(BITS);
     DVec3::from_array(normal.map(|x| i64::try_from(x >> excess).map_or(0.0, |x| x as f64)))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn exponents_are_those_above_the_number() {
+        let exponents = [0.75, 1.0, 3.0, f64::from_bits(1), 0.0].map(binary_exponent);
+        assert_eq!(exponents, [Some(0), Some(1), Some(2), Some(-1073), None]);
+    }
+
+    #[test]
+    fn normals_are_cross_products() {
+        // Edges (3, 1, -1) and (2, 5, 5).
+        let corners = [[1.0, 2.0, 4.0], [4.0, 3.0, 3.0], [3.0, 7.0, 9.0]].map(DVec3::from_array);
+        let expected = DVec3::new(10.0, -17.0, 13.0).normalize();
+        assert!(exact_normal(&corners).normalize().distance(expected) < 1e-15);
+        assert!(unit_normal(&Hull::of(&corners)).distance(expected) < 1e-15);
+        // Two edges are parallel up to 2^-90: their cross product has about 16 bits.
+        let (v, w) = (DVec3::new(0.3, -0.7, 0.45), DVec3::new(0.8, 0.35, -0.6));
+        let needle = [-v, DVec3::ZERO, w * 2.0_f64.powi(-90)];
+        assert!(unit_normal(&Hull::of(&needle)).distance(v.cross(w).normalize()) < 1e-14);
+        // All edges are parallel up to 2^-120.
+        let flat = [DVec3::NEG_X, DVec3::new(1.0, 2.0_f64.powi(-120), 0.0), DVec3::ZERO];
+        assert_eq!(unit_normal(&Hull::of(&flat)), DVec3::NEG_Z);
+    }
+}

@@ -182,3 +182,23 @@ fn candidates(a: &[DVec3; 3], b: &[DVec3; 3]) -> [Option<Vector>; 11] {
         _ => e[i / 3].zip(f[i % 3]).and_then(|(e, f)| cross(&e, &f)).map(|(_, normal)| normal),
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// All edges are parallel up to 2^-100, so no cross product has digits left.
+    #[test]
+    fn needles_along_one_line_have_a_depth() {
+        let width = 2.0_f64.powi(-100);
+        let a = [DVec3::NEG_X, DVec3::X, DVec3::Y * width];
+        let b = [[-1.0, -1.0], [1.0, -1.0], [0.0, 1.0]].map(|[x, z]| DVec3::new(x, width / 4.0, width * z));
+        assert!(candidates(&a, &b).iter().all(Option::is_none));
+        let found = penetration_triangle_triangle(&a, &b).unwrap();
+        assert!(found.depth > 0.0 && found.depth < 8.0 * width, "{found:?}");
+        assert!(
+            (found.direction.length() - 1.0).abs() < 1e-15 && found.direction.x.abs() < 1e-15,
+            "{found:?}"
+        );
+    }
+}

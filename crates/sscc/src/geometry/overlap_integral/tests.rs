@@ -136,3 +136,25 @@ fn check(a: &[DVec3; 3], b: &[DVec3; 3]) -> u32 {
     assert!(off <= exact(found.error), "{found:?}: {a:?} {b:?}");
     u32::from(!off.is_zero())
 }
+
+#[test]
+fn planes_and_errors_are_those_of_formulas() {
+    // The last edge is the longest one.
+    let plane = Plane::new(&[[0.0; 3], [1.0, 1.0, 2.0], [4.0, 0.0, 8.0]].map(DVec3::from_array), 8.0);
+    assert_eq!((plane.area, plane.width, plane.z), (-2.0, 4.0, (0.0, 8.0)));
+    let small = Plane::new(&[[0.0; 3], [0.25, 0.0, 0.0], [0.0, 0.5, 8.0]].map(DVec3::from_array), 8.0);
+    let corners = [[-4.0, -4.0, 1.0], [8.0, -4.0, 1.0], [-4.0, 8.0, 1.0]].map(DVec3::from_array);
+    let level = Plane::new(&corners, 8.0);
+    assert_eq!(small.area, 0.0625);
+    // Clips: 8 * width * 8. Heights: the same times the share of the area.
+    for (area, units) in [(0.0625, 128.0), (0.03125, 96.0)] {
+        assert_eq!(error([&small, &level], 8.0, area), ERROR * (units * small.width));
+    }
+    // A slope of 2^923 times 8 * 2^100 is beyond the range; then all heights between 2 and 4 are possible.
+    let steep = [[0.0, 0.0, 2.0], [2.0_f64.powi(-922), 0.0, 4.0], [0.0, 1.0, 2.0]].map(DVec3::from_array);
+    let vague = Plane::new(&steep, 2.0_f64.powi(100));
+    assert!(vague.is_vague && !Plane::new(&steep, 1.0).is_vague);
+    assert_eq!(error([&vague, &level], 1.0, 3.0), 6.0 + ERROR * 6.0);
+    assert_eq!(error([&level, &vague], 1.0, 3.0), 6.0 + ERROR * 6.0);
+    assert_eq!(error([&vague, &vague], 1.0, 3.0), 12.0 + ERROR * 8.0);
+}
