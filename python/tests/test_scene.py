@@ -50,20 +50,6 @@ def test_nodes_are_checked_with_each_other(scene: sscc.Scene) -> None:
     assert near[-1].distances is not None and near[-1].distances.tolist() == [1]
 
 
-def test_nodes_that_no_player_shows_are_left_out_with_a_warning(tmp_path: Path) -> None:
-    path = character(tmp_path)
-    file = json.loads(path.read_text())
-    file["scenes"] = [{"nodes": [0, 1]}, {"nodes": [2]}]
-    path.write_text(json.dumps(file))
-    scene = sscc.Scene.load(path)
-    assert [node.name for node in scene.nodes] == ["body"]
-    with pytest.warns(UserWarning, match=r"character\.gltf: 1 node outside scene 0 is left out"):
-        [answer] = scene.check()
-    assert answer.node_name == "body"
-    # A name selects such a node.
-    assert scene.positions("shirt")[0, 0].tolist() == [1, 1, 1]
-
-
 def test_groups_are_names_of_nodes_meshes_and_materials(scene: sscc.Scene) -> None:
     for a in ("body", "torso", "skin"):
         for b in ("shirt", "cotton", "cloth"):

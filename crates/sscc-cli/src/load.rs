@@ -6,7 +6,9 @@ use std::path::Path;
 use anyhow::{Context, Error, Result, bail, ensure};
 use sscc::parts::check_models;
 use sscc::{Certificates, CertifyOptions, ReducedModel};
-use sscc_io::{IoError, LoadOptions, LoadedModel, Setting, check_replaceable, has_file, is_folder_of_mesh};
+use sscc_io::{
+    IoError, LoadOptions, LoadedModel, Setting, check_replaceable, has_file, is_folder_of_mesh, linked_file,
+};
 use sscc_tasks::{CertificateRequest, GroupRules, Scheme, TaskError, available_threads, read_configuration};
 
 use crate::output::{note, warn};
@@ -113,7 +115,8 @@ pub fn check_output(output: &Path, ending: &str, inputs: &[&Path]) -> Result<()>
         ensure!(!is_input, "{shown}: the output is an input; choose another name");
         ensure!(real.is_file(), "{shown}: cannot be written: it is not a file; choose another name");
     }
-    if let Some(input) = inputs.iter().find(|input| is_folder_of_mesh(input, output)) {
+    let target = linked_file(output)?;
+    if let Some(input) = inputs.iter().find(|input| is_folder_of_mesh(input, &target)) {
         bail!(
             "{shown}: the output would be a mesh of the input folder {}; choose another folder",
             input.display()

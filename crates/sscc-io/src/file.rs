@@ -72,7 +72,7 @@ pub(crate) fn read_error(path: &Path, cause: io::Error) -> IoError {
 
 /// Writes a whole file atomically: to a temporary file in the same folder, which is then renamed. An old file stays
 /// unchanged until the new one is complete. A link is followed: it stays, and the file to which it leads is replaced. On Unix the
-/// new file has the permissions of the old one.
+/// new file has the permissions of the old one if owner and group are the same.
 ///
 /// # Errors
 /// When the folder is not writable, the target is not a regular file or is read-only, a link leads to a folder that does not exist,
@@ -110,11 +110,9 @@ impl WholeFile {
         check_target(path)?;
         let target = linked_file(path)?;
         let part = PartFile::create_in(folder(&target)).map_err(|cause| not_written(path, cause))?;
-        // Before the first byte is written, so that nobody can read it who cannot read the old file.
-        if cfg!(unix)
-            && let Ok(old) = fs::metadata(&target)
-        {
-            part.set_permissions(old.permissions());
+        // Before the first byte is written.
+        if let Ok(old) = fs::metadata(&target) {
+            part.set_permissions_of(&old);
         }
         Ok(Self { path: path.to_owned(), target, part })
     }
@@ -151,7 +149,7 @@ pub(crate) fn check_target(path: &Path) -> Result<(), IoError> {
 ///
 /// # Errors
 /// When a link cannot be read, or leads to a folder that does not exist or to itself.
-fn linked_file(path: &Path) -> Result<PathBuf, IoError> {
+pub fn linked_file(path: &Path) -> Result<PathBuf, IoError> {
     let mut file = path.to_owned();
     for links in 0..MAX_LINKS {
         if !fs::symlink_metadata(&file).is_ok_and(|found| found.is_symlink()) {

@@ -100,7 +100,7 @@ pub use container::{
 };
 pub use curves::{write_obj_curves, write_ply_curves};
 pub use error::{FormatError, IoError, Place};
-pub use file::{check_replaceable, check_writable, folder, read_whole, write_whole};
+pub use file::{check_replaceable, check_writable, folder, linked_file, read_whole, write_whole};
 pub use forces::{parse_reduced_forces, read_reduced_forces};
 pub use groups::{read_base_groups, read_group_numbers, read_groups};
 pub use load::{

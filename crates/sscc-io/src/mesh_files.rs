@@ -49,7 +49,7 @@ pub fn is_folder_of_mesh(input: &Path, file: &Path) -> bool {
 }
 
 /// Whether the ending is that of a file with a mesh.
-fn has_mesh(path: &Path) -> bool {
+pub(crate) fn has_mesh(path: &Path) -> bool {
     is_mesh_name(path) || is_gltf(path) || is_solid_name(path)
 }
 

@@ -1,7 +1,9 @@
 //! Temporary files beside a target, which replace it by renaming.
 
-use std::fs::{self, File, Permissions};
+use std::fs::{self, File, Metadata};
 use std::io::{self, ErrorKind, Write};
+#[cfg(unix)]
+use std::os::unix::fs::MetadataExt;
 use std::path::{Path, PathBuf};
 use std::process;
 
@@ -26,11 +28,17 @@ impl PartFile {
         self.file.as_mut().map_or(Ok(()), |file| file.write_all(bytes))
     }
 
-    /// Sets the permissions of the file. Some file systems have none: there the file keeps those with which it was created.
-    pub(crate) fn set_permissions(&self, permissions: Permissions) {
-        if let Some(file) = &self.file {
-            let _ = file.set_permissions(permissions);
+    /// Sets the permissions of another file, on Unix, if owner and group are the same: for others these permissions would have
+    /// another meaning. Some file systems have none: there the file keeps those with which it was created.
+    pub(crate) fn set_permissions_of(&self, old: &Metadata) {
+        #[cfg(unix)]
+        if let Some(file) = &self.file
+            && file.metadata().is_ok_and(|new| (new.uid(), new.gid()) == (old.uid(), old.gid()))
+        {
+            let _ = file.set_permissions(old.permissions());
         }
+        #[cfg(not(unix))]
+        let _ = old;
     }
 
     /// Flushes the file to the disk and renames it to `target`, which is replaced if it exists.

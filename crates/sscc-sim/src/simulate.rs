@@ -3,11 +3,11 @@
 use std::path::{Path, PathBuf};
 
 use rayon::{ThreadPool, ThreadPoolBuilder};
-use sscc_io::Setting;
+use sscc_io::{Setting, check_replaceable};
 use sscc_tasks::{Cache, Shape, Watch, available_threads, make_folder, models_folder};
 
 use crate::error::{At, Result, SimError};
-use crate::files::{check_inputs, check_others};
+use crate::files::{OUTPUT_FILES, check_inputs, check_others};
 use crate::run::{
     FinishedRun, PreparedScene, RunOutcome, Summary, announcement, check_log_size, run, traditional_costs,
 };
@@ -55,6 +55,9 @@ pub fn simulate(request: &Request, watch: &dyn Watch) -> Result<FinishedRun, Sim
     check_inputs(&folder, &inputs(&request.scene, &scene, models.as_deref()))?;
     check_others(&folder)?;
     make_folder(&folder)?;
+    if !request.restart {
+        OUTPUT_FILES.iter().try_for_each(|name| check_replaceable(&folder.join(name)))?;
+    }
     let threads = request.threads.unwrap_or_else(available_threads);
     let pool = start_threads(ThreadPoolBuilder::new(), threads)?;
     let steps = request.steps.unwrap_or(scene.steps);

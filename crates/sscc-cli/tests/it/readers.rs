@@ -146,7 +146,8 @@ fn soups_have_a_hint_at_welding() {
         );
         assert_eq!((found.code, found.stderr), (Some(1), expected));
     }
-    // There is no hint if the user has chosen, or if welding would not help.
+    // There is no hint if the user has chosen, or if welding would not help. A folder changes no flag.
+    std::fs::create_dir(directory.path().join("off")).unwrap();
     for (args, code) in [
         (&["soup.obj", "--weld"][..], 0),
         (&["soup.obj", "--weld=off"], 1),

@@ -522,36 +522,6 @@ fn nodes_without_triangles_are_left_out_with_a_warning() {
     assert!(alone.refusal().starts_with("error: strip.gltf#a: meshes[0]: it has only strips "), "{alone:?}");
 }
 
-/// Two meshes cross, but no player shows both: they are in different scenes, or one of them is hidden.
-#[test]
-fn nodes_that_no_player_shows_are_left_out_with_a_warning() {
-    let directory = tempfile::tempdir().unwrap();
-    let folder = directory.path();
-    let sheet = [[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [0.0, 4.0, 0.0]];
-    let needle = [[1.0, 1.0, -1.0], [1.0, 1.0, 1.0], [2.0, 1.0, 1.0]];
-    let meshes: [(&str, &[[f32; 3]]); 2] = [("sheet", &sheet), ("needle", &needle)];
-    let nodes = json!([{"mesh": 0, "name": "floor"}, {"mesh": 1, "name": "pin"}]);
-    write(folder, "all.gltf", &gltf(&meshes, nodes.clone()));
-    assert_eq!(lines(folder, &["all.gltf"]).len(), 3);
-    let mut scenes = gltf(&meshes, nodes.clone());
-    scenes["scene"] = json!(0);
-    scenes["scenes"] = json!([{"nodes": [0]}, {"nodes": [1]}]);
-    let mut hidden = gltf(&meshes, nodes);
-    hidden["nodes"][1]["extensions"] = json!({"KHR_node_visibility": {"visible": false}});
-    for (file, content, warning) in [
-        ("scenes.gltf", scenes, "1 node outside scene 0 is left out"),
-        ("hidden.gltf", hidden, "1 node that KHR_node_visibility hides is left out"),
-    ] {
-        write(folder, file, &content);
-        let run = sscc(folder, &["check", file, "--json"]);
-        assert_eq!((run.code, run.json().len(), &run.json()[0]["node"]), (Some(0), 1, &json!(0)), "{run:?}");
-        assert_eq!(run.stderr, format!("warning: {file}: {warning}\n"));
-        // Names select such nodes.
-        let [pin, floor] = ["pin", "floor"].map(|node| format!("{file}#{node}"));
-        assert_eq!(lines(folder, &[&pin, "--against", &floor])[0]["pairs"], json!([[0, 0]]));
-    }
-}
-
 /// A warning names an extension that shows a mesh at many places: its instances are not compared.
 #[test]
 fn a_warning_names_the_extension_of_instances() {

@@ -197,7 +197,7 @@ struct Asset {
 }
 
 /// Prefixes of supported extensions. They do not change positions (colours, images, light, texts, faces of polygons,
-/// rigs of avatars), quantize numbers, which the reader decodes, or hide nodes (KHR_node_visibility), which it leaves out.
+/// rigs of avatars), or quantize numbers, which the reader decodes.
 const SUPPORTED_EXTENSIONS: [&str; 14] = [
     "KHR_materials_",
     "KHR_texture_",

@@ -10,9 +10,8 @@ use super::named_modes::NamedModes;
 use super::vtk_frames;
 use crate::error::shown_name;
 use crate::folder_files::list_files;
-use crate::gltf::is_gltf;
 use crate::mesh::{is_mesh_name, read_soup};
-use crate::solid::is_solid_name;
+use crate::mesh_files::has_mesh;
 use crate::solid::tetgen::other_of_pair;
 use crate::solid::vtk::{Displacement, is_vtk_name};
 use crate::{FormatError, IoError};
@@ -53,6 +52,11 @@ pub fn read(folder: &Path, neutral: &TriMesh, neutral_path: &Path) -> Result<Nam
     Ok(NamedModes { modes, names: paths.iter().map(name).collect(), deviations: None })
 }
 
+/// Whether the ending is that of a target or a frame.
+pub(crate) fn is_member_name(path: &Path) -> bool {
+    is_mesh_name(path) || is_vtk_name(path)
+}
+
 /// Returns the mesh files of a folder without the neutral one (its canonical path), in natural order; at least one. `what`
 /// names them in messages.
 ///
@@ -67,11 +71,9 @@ pub(crate) fn mesh_files(folder: &Path, neutral: Option<&Path>, what: &str) -> R
         !of_neutral.is_empty()
             && fs::canonicalize(path).is_ok_and(|path| of_neutral.contains(&path.as_path()))
     };
-    let is_mesh = |path: &Path| is_mesh_name(path) || is_vtk_name(path);
-    let has_mesh = |path: &Path| is_mesh(path) || is_solid_name(path) || is_gltf(path);
     let paths = list_files(folder, |path| has_mesh(path) && !is_neutral(path))?;
     let request = |cause: String| Err(IoError::request(folder, cause));
-    if let Some(other) = paths.iter().find(|path| !is_mesh(path)) {
+    if let Some(other) = paths.iter().find(|path| !is_member_name(path)) {
         let name = shown_name(other);
         return request(format!("{name} is no {what}: {what}s are {ENDINGS}; convert it or move it away"));
     }

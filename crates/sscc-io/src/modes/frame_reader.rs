@@ -50,7 +50,7 @@ impl FrameReader {
     /// - a folder of meshes with the same faces or none, in the natural order of their names (`9.obj` before `10.obj`), as
     ///   in [`read_frames`](crate::read_frames).
     ///
-    /// `mesh_path` names the mesh in messages.
+    /// `mesh_path` names the mesh in messages. If it is in the folder and cannot be a frame, it is skipped.
     ///
     /// # Errors
     /// When the path is none of them; when the array or the point cache is malformed, cut off, without a frame or for
@@ -58,7 +58,7 @@ impl FrameReader {
     /// mesh or more than 10,000.
     pub fn open(path: &Path, mesh: &TriMesh, mesh_path: &Path) -> Result<Self, IoError> {
         let source = if path.is_dir() {
-            let files = frame_files(path)?;
+            let files = frame_files(path, Some(&split_mesh_name(mesh_path).0))?;
             Source::Folder { kept: vec![None; files.len()], files }
         } else if ending(path) == "npy" {
             let blocks = Blocks::open(path)?;

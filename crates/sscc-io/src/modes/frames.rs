@@ -1,11 +1,12 @@
 //! Reads an animation from a folder of meshes with the same faces.
 
+use std::fs;
 use std::path::{Path, PathBuf};
 
 use glam::DVec3;
 use sscc::TriMesh;
 
-use super::folder::{mesh_files, positions_like};
+use super::folder::{is_member_name, mesh_files, positions_like};
 use crate::error::shown_name;
 use crate::solid::vtk::{Displacement, is_vtk_name, read_surface};
 use crate::{IoError, read_mesh_with_warnings};
@@ -33,7 +34,7 @@ pub struct Frames {
 /// and would be missing; when a mesh cannot be read, has another number of vertices or faces other than those of the first
 /// one (a mesh file may have none), or a coordinate that is not finite or beyond [`sscc::limits::LARGEST`].
 pub fn read_frames(folder: &Path) -> Result<Frames, IoError> {
-    let paths = frame_files(folder)?;
+    let paths = frame_files(folder, None)?;
     let (mesh, warnings) = read_first(&paths[0])?;
     let first = format!("the first one ({})", shown_name(&paths[0]));
     let mut positions = vec![mesh.rest_positions().to_vec()];
@@ -48,9 +49,11 @@ fn read_first(path: &Path) -> Result<(TriMesh, Vec<String>), IoError> {
     if is_vtk_name(path) { read_surface(path, &Displacement::ByName) } else { read_mesh_with_warnings(path) }
 }
 
-/// Returns the mesh files of a folder, in natural order; at least one.
-pub(super) fn frame_files(folder: &Path) -> Result<Vec<PathBuf>, IoError> {
-    mesh_files(folder, None, "frame")
+/// Returns the mesh files of a folder, in natural order; at least one. The mesh that the frames move is no gap among them, if it
+/// cannot be a frame.
+pub(super) fn frame_files(folder: &Path, moved: Option<&Path>) -> Result<Vec<PathBuf>, IoError> {
+    let moved = moved.filter(|path| !is_member_name(path)).and_then(|path| fs::canonicalize(path).ok());
+    mesh_files(folder, moved.as_deref(), "frame")
 }
 
 #[cfg(test)]
@@ -93,13 +96,28 @@ mod tests {
         for names in schemes {
             let directory = tempfile::tempdir().unwrap();
             names.iter().rev().for_each(|name| std::fs::write(directory.path().join(name), FRAME).unwrap());
-            let found: Vec<String> = frame_files(directory.path())
+            let found: Vec<String> = frame_files(directory.path(), None)
                 .unwrap()
                 .iter()
                 .map(|path| path.file_name().unwrap().to_string_lossy().into_owned())
                 .collect();
             assert_eq!(found, names);
         }
+    }
+
+    /// The mesh that the frames move can be in their folder: a solid there is no gap, and one that can be a frame is one.
+    #[test]
+    fn the_moved_mesh_in_the_folder_is_no_gap() {
+        let directory = tempfile::tempdir().unwrap();
+        let at = |name: &str| directory.path().join(name);
+        ["1.obj", "2.obj", "rest.msh"].iter().for_each(|name| fs::write(at(name), FRAME).unwrap());
+        let count =
+            |moved: Option<&str>| frame_files(directory.path(), moved.map(at).as_deref()).map(|f| f.len());
+        assert_eq!(count(Some("rest.msh")).unwrap(), 2);
+        assert_eq!(count(Some("../none.msh")).unwrap_err().to_string(), count(None).unwrap_err().to_string());
+        assert!(count(None).unwrap_err().to_string().contains("rest.msh is no frame"));
+        fs::remove_file(at("rest.msh")).unwrap();
+        assert_eq!(count(Some("1.obj")).unwrap(), 2);
     }
 
     /// A frame has the triangles of the first frame, even if the fan of a polygon would triangulate it in this frame.

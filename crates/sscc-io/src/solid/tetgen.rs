@@ -1,6 +1,6 @@
 //! Reader for TetGen's pair of files: `.node` with the vertices, `.ele` with the tetrahedra.
 
-use std::ffi::OsString;
+use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -10,7 +10,7 @@ use sscc_solid::VolumeMesh;
 use super::builder::Builder;
 use super::statements::{corners, fields, index, position, statements, value};
 use crate::error::shown_name;
-use crate::file::{ending, folder, read_whole};
+use crate::file::{ending, read_whole};
 use crate::{FormatError, IoError, Place};
 
 /// Vertices of a `.node` file.
@@ -76,24 +76,12 @@ fn beside(path: &Path, other: &str) -> Result<PathBuf, IoError> {
     }
 }
 
-/// Returns the existing files of the same name with another ending, in any case. The folder is listed only where several
-/// seem to exist: a data set may have many pairs.
+/// Returns the existing files of the same name with another ending, in any case. Where the case of names does not count, all
+/// spellings are one file.
 fn companions(path: &Path, other: &str) -> Vec<PathBuf> {
-    let paths = spellings(other).map(|ending| path.with_extension(ending));
-    let mut found: Vec<PathBuf> = paths.filter(|path| path.exists()).collect();
-    if found.len() < 2 {
-        return found;
-    }
-    // Where the case of names does not count, all spellings are one file, whose name the folder lists once.
-    let Ok(entries) = fs::read_dir(folder(path)) else { return found };
-    let names: Vec<OsString> = entries.flatten().map(|entry| entry.file_name()).collect();
-    let is_listed = |path: &PathBuf| names.iter().any(|name| path.file_name() == Some(name.as_os_str()));
-    if found.iter().any(is_listed) {
-        found.retain(is_listed)
-    } else {
-        found.truncate(1)
-    }
-    found
+    let mut known = BTreeSet::new();
+    let is_new = |path: &PathBuf| fs::canonicalize(path).is_ok_and(|real| known.insert(real));
+    spellings(other).map(|ending| path.with_extension(ending)).filter(is_new).collect()
 }
 
 /// Returns all spellings of a short ending in small letters and capitals.

@@ -110,15 +110,16 @@ impl<'a> Words<'a> {
         Ok(bytes)
     }
 
-    /// Returns the rest of the line, without its end.
+    /// Returns the rest of the line, without its end. Several CR before LF are one end.
     pub fn rest_of_line(&mut self) -> &'a [u8] {
         let rest = &self.bytes[self.at..];
         let line = &rest[..rest.iter().position(|b| is_line_end(*b)).unwrap_or(rest.len())];
-        self.at += line.len();
-        if self.at < self.bytes.len() {
-            self.at += if ends_line(self.bytes, self.at) { 1 } else { 2 };
-            self.line += 1;
-        }
+        let end = &rest[line.len()..];
+        let returns = end.iter().take_while(|b| **b == b'\r').count();
+        let size = if end.get(returns) == Some(&b'\n') { returns + 1 } else { returns.min(1) };
+        let places = self.at + line.len()..self.at + line.len() + size;
+        self.at = places.end;
+        self.line += places.filter(|at| ends_line(self.bytes, *at)).count();
         line
     }
 
@@ -173,5 +174,15 @@ mod tests {
         words.word("a").unwrap();
         assert_eq!(words.rest_of_line(), b" b");
         assert!(words.skip_past_line("$End"));
+    }
+
+    /// Python on Windows writes CR CR LF. A single CR ends a line beside lines that end with LF, too.
+    #[test]
+    fn several_returns_before_a_line_feed_are_one_end() {
+        let mut words = Words::new(b"# vtk\r\r\ntitle\r\r\nASCII\r\r\nx", false).unwrap();
+        assert_eq!([words.rest_of_line(), words.rest_of_line()], [&b"# vtk"[..], b"title"]);
+        assert_eq!(words.word("ASCII or BINARY").unwrap(), "ASCII");
+        let mut words = Words::new(b"a\rb\nc", false).unwrap();
+        assert_eq!([(); 3].map(|()| words.rest_of_line()), [b"a", b"b", b"c"]);
     }
 }

@@ -74,9 +74,13 @@ impl StateLog {
         let mut start = Vec::new();
         (&mut file).take(recognised_bytes() as u64).read_to_end(&mut start).system(&path)?;
         let is_own = start.starts_with(&digest);
-        // An empty file has nothing to lose. A checkpoint belongs to a damaged log.
-        let is_known =
-            start.is_empty() || is_own || is_log(&start) || is_checkpoint(&folder.join(CHECKPOINT));
+        // A file without a state has nothing to lose: empty, or a digest alone, where a simulation was killed before it wrote a
+        // state. A checkpoint belongs to a damaged log.
+        let is_known = start.is_empty()
+            || start.len() == DIGEST
+            || is_own
+            || is_log(&start)
+            || is_checkpoint(&folder.join(CHECKPOINT));
         if !is_known {
             return Err(of_others(&path));
         }
@@ -300,6 +304,10 @@ mod tests {
         let again = StateLog::open(folder.path(), [2; DIGEST], StateLayout::new([1]), true).unwrap();
         assert!(again.1.is_none() && again.0.len() == 0);
         drop(again);
+        // So is one that was killed before its first state.
+        let message = open(folder.path(), 3).err().unwrap().to_string();
+        assert!(message.contains("states.log: this file belongs to another scene"), "{message}");
+        drop(StateLog::open(folder.path(), [2; DIGEST], StateLayout::new([1]), true).unwrap());
         // The same simulation also continues from a log without a state.
         assert_eq!(fs::read(folder.path().join(LOG)).unwrap(), [2; DIGEST]);
         assert!(open(folder.path(), 2).unwrap().1.is_none());
@@ -312,7 +320,7 @@ mod tests {
         let text = "2026-11-28 12:00:00 state 17: idle\n".repeat(20);
         let ones: Vec<u8> = [1.0_f64; 60].iter().flat_map(|x| x.to_le_bytes()).collect();
         let text = text.as_bytes();
-        let cases: [&[u8]; 5] = [text, &text[..1], &text[..DIGEST], &ones, &[0; 400]];
+        let cases: [&[u8]; 5] = [text, &text[..1], &text[..DIGEST + 1], &ones, &[0; 400]];
         for bytes in cases {
             fs::write(&path, bytes).unwrap();
             for again in [false, true] {

@@ -83,8 +83,7 @@ impl Default for Detection {
 pub enum MeshMotion {
     /// The mesh as it is in its file; a glTF mesh at the first node that shows it. With another mesh, there is an
     /// answer for every node of the mesh with every node of the other one. A glTF file with several meshes, none of
-    /// which is named, is a scene: there is an answer for every node with a mesh that a player shows, and for every two of them
-    /// that collide.
+    /// which is named, is a scene: there is an answer for every node with a mesh, and for every two nodes that collide.
     Rest,
     /// Frames from a file or a folder of meshes ([`sscc_io::FrameReader`] lists the formats).
     Frames(PathBuf),
@@ -99,8 +98,7 @@ pub struct AnimationMotion {
     pub animation: Option<String>,
     /// Times of the queries.
     pub times: Times,
-    /// Number or name of the node. None means every node with a mesh that a player shows
-    /// ([`AnimatedScene`](sscc_io::gltf::AnimatedScene)).
+    /// Number or name of the node. None means every node that shows a mesh with triangles.
     pub node: Option<String>,
     /// Reading of weights that do not sum to 1.
     pub weights: SkinWeights,

@@ -8,8 +8,8 @@ use anyhow::{Result, bail, ensure};
 use glam::DVec3;
 use sscc::{Pair, TriMesh};
 use sscc_io::{
-    LoadedModel, VtkFramesWriter, folder, is_collection, split_mesh_name, write_obj_curves, write_obj_pose,
-    write_ply_curves, write_ply_pose, write_vtu_pose,
+    LoadedModel, VtkFramesWriter, folder, is_collection, linked_file, split_mesh_name, write_obj_curves,
+    write_obj_pose, write_ply_curves, write_ply_pose, write_vtu_pose,
 };
 use sscc_tasks::{ContactOptions, DetectionAnswer};
 
@@ -59,11 +59,12 @@ pub fn check(args: &Check, meshes: &[PathBuf]) -> Result<()> {
     Ok(())
 }
 
-/// Returns the path of an output with the real path of its folder; as it is if the folder does not exist.
+/// Returns the path of the file that an output writes, after all links; as it is if the folder does not exist.
 fn real(output: &Path) -> PathBuf {
-    match (fs::canonicalize(folder(output)), output.file_name()) {
+    let file = linked_file(output).unwrap_or_else(|_| output.to_owned());
+    match (fs::canonicalize(folder(&file)), file.file_name()) {
         (Ok(folder), Some(name)) => folder.join(name),
-        _ => output.to_owned(),
+        _ => file,
     }
 }
 

@@ -9,12 +9,10 @@ use super::nodes::Nodes;
 use super::skin::Skin;
 use crate::FormatError;
 
-/// The nodes with a mesh that a player shows, skins and animations of a glTF file. [`AnimatedScene::pose`] evaluates them at a
-/// time.
+/// All nodes with a mesh, skins and animations of a glTF file. [`AnimatedScene::pose`] evaluates them at a time.
 ///
-/// A player shows the nodes of the default scene that KHR_node_visibility does not hide; those that an animation can show count
-/// as shown at all times. If it shows no mesh, all nodes with a mesh count. Joints and animated ancestors are evaluated wherever
-/// they are. Vertices are in the unit of the file (by the standard: metres), times in seconds.
+/// Nodes count whether or not one of the file's scenes contains them. Vertices are in the unit of the file (by the
+/// standard: metres), times in seconds.
 ///
 /// ```no_run
 /// use sscc_io::gltf::{SkinWeights, read_scene};
@@ -33,10 +31,7 @@ use crate::FormatError;
 /// ```
 pub struct AnimatedScene {
     pub(super) nodes: Nodes,
-    /// Nodes with a mesh that a player shows, in file order.
     pub(super) mesh_nodes: Vec<MeshNode>,
-    /// The other nodes with a mesh, in file order.
-    pub(super) left_out: Vec<MeshNode>,
     /// Skins that nodes with a mesh use, by their numbers.
     pub(super) skins: BTreeMap<usize, Skin>,
     /// Animations; the errors of those that are malformed.
@@ -46,15 +41,18 @@ pub struct AnimatedScene {
 }
 
 impl AnimatedScene {
-    /// Nodes that show a mesh with triangles, in file order. A strip whose triangles all have repeated corners has none. Nodes
-    /// that a player does not show are left out; [`AnimatedScene::find_mesh_nodes`] finds them by number or name.
+    /// Nodes that show a mesh with triangles, in file order. A strip whose triangles all have repeated corners has none.
     pub fn mesh_nodes(&self) -> &[MeshNode] {
         &self.mesh_nodes
     }
 
+    /// Returns a node with a mesh by its number.
+    pub(super) fn mesh_node(&self, node: usize) -> Option<&MeshNode> {
+        self.mesh_nodes.get(self.mesh_nodes.binary_search_by_key(&node, |mesh_node| mesh_node.node).ok()?)
+    }
+
     /// Lines about data that the standard requires but the meshes lack, and how the reader replaces them; about extensions
-    /// that are not evaluated; about nodes that are left out because the strips of their meshes have no triangles, or because a
-    /// player does not show them.
+    /// that are not evaluated; about nodes that are left out because the strips of their meshes have no triangles.
     pub fn notes(&self) -> &[String] {
         &self.notes
     }
@@ -62,19 +60,6 @@ impl AnimatedScene {
     /// Animations, in file order.
     pub fn animations(&self) -> &[AnimationInfo] {
         &self.infos
-    }
-
-    /// Returns a node with a mesh by its number, also one that a player does not show.
-    pub(super) fn mesh_node(&self, node: usize) -> Option<&MeshNode> {
-        self.mesh_nodes_of_number(node)?.first()
-    }
-
-    /// As [`AnimatedScene::mesh_node`], as a list of this node.
-    pub(super) fn mesh_nodes_of_number(&self, node: usize) -> Option<&[MeshNode]> {
-        [&self.mesh_nodes, &self.left_out].into_iter().find_map(|nodes| {
-            let at = nodes.binary_search_by_key(&node, |mesh_node| mesh_node.node).ok()?;
-            nodes.get(at..=at)
-        })
     }
 }
 

@@ -162,7 +162,7 @@ fn size(accessors: &mut Accessors<'_>, number: usize, mesh: &Mesh) -> Result<[us
 }
 
 fn mesh_nodes(placed: &PlacedRoot) -> Vec<MeshNodeContents> {
-    let is_in_default_scene = nodes_of_default_scene(&placed.nodes, &placed.scenes, placed.scene);
+    let is_in_default_scene = nodes_of_default_scene(placed);
     let mesh_node = |(number, node): (usize, &json::Node)| {
         Some(MeshNodeContents {
             node: number,

@@ -37,8 +37,7 @@ impl AnimatedScene {
         Ok(number)
     }
 
-    /// Returns the node of that number, else of that name, which must have a mesh with triangles; without a name all such nodes
-    /// that a player shows. A name finds a node that a player does not show only if it shows none of this name.
+    /// Returns the node of that number, else of that name, which must show a mesh with triangles; without a name all such nodes.
     ///
     /// # Errors
     /// When there is none, or several have that name; the message lists the nodes with meshes.
@@ -48,26 +47,21 @@ impl AnimatedScene {
             return Err(FormatError::whole("no node of the file shows a mesh with triangles"));
         }
         let Some(node) = node else { return Ok(all) };
-        let number = node.parse::<usize>().ok();
-        if let Some(found) = number.and_then(|number| self.mesh_nodes_of_number(number)) {
-            return Ok(found);
-        }
+        let number = node.parse().ok().and_then(|node| all.binary_search_by_key(&node, MeshNode::node).ok());
         let named = |other: &MeshNode| other.name() == Some(node);
-        for nodes in [all, &self.left_out[..]] {
-            let Some(at) = nodes.iter().position(named) else { continue };
-            if nodes.iter().skip(at + 1).any(named) {
-                let (name, list) = (quoted(node), mesh_node_list(nodes));
-                let cause = format!("several nodes have the name {name}: choose one by its number: {list}");
-                return Err(FormatError::whole(cut(&cause, MAX_LIST)));
+        let found = number.or_else(|| all.iter().position(named));
+        let list: Vec<String> = all.iter().map(|node| listed(node.node, node.name())).collect();
+        let list = list.join(", ");
+        let cause = match found {
+            None if node.parse::<usize>().is_ok() => {
+                format!("node {node} shows no mesh with triangles; these nodes do: {list}")
             }
-            return Ok(&nodes[at..=at]);
-        }
-        let place = match number {
-            None => format!("no node {} shows a mesh", quoted(node)),
-            Some(_) => format!("node {node} shows no mesh"),
+            None => format!("no node {} shows a mesh with triangles; these nodes do: {list}", quoted(node)),
+            Some(at) if number.is_none() && all[at + 1..].iter().any(named) => {
+                format!("several nodes have the name {}: choose one by its number: {list}", quoted(node))
+            }
+            Some(at) => return Ok(&all[at..=at]),
         };
-        let list = mesh_node_list(all.iter().chain(&self.left_out));
-        let cause = format!("{place} with triangles; these nodes do: {list}");
         Err(FormatError::whole(cut(&cause, MAX_LIST)))
     }
 
@@ -77,12 +71,6 @@ impl AnimatedScene {
         let list: Vec<String> = self.infos.iter().enumerate().map(listed).collect();
         cut(&format!("the animations of the file, by number: {}", list.join(", ")), MAX_LIST)
     }
-}
-
-/// Returns the number and the name of each node.
-fn mesh_node_list<'a>(nodes: impl IntoIterator<Item = &'a MeshNode>) -> String {
-    let list: Vec<String> = nodes.into_iter().map(|node| listed(node.node, node.name())).collect();
-    list.join(", ")
 }
 
 fn listed(number: usize, name: Option<&str>) -> String {

@@ -46,56 +46,10 @@ pub(super) struct MotionRoot {
     pub animations: Vec<Animation>,
 }
 
-/// The properties that animations change through JSON pointers (KHR_animation_pointer).
-#[derive(Deserialize)]
-pub(super) struct PointerRoot {
-    #[serde(default, deserialize_with = "or_default")]
-    animations: Vec<PointerAnimation>,
-}
-
-#[derive(Deserialize)]
-struct PointerAnimation {
-    channels: Vec<PointerChannel>,
-}
-
-#[derive(Deserialize)]
-struct PointerChannel {
-    target: PointerTarget,
-}
-
-#[derive(Deserialize)]
-struct PointerTarget {
-    extensions: Option<PointerExtensions>,
-}
-
-#[derive(Deserialize)]
-struct PointerExtensions {
-    #[serde(rename = "KHR_animation_pointer")]
-    animation_pointer: Option<Pointer>,
-}
-
-#[derive(Deserialize)]
-struct Pointer {
-    pointer: String,
-}
-
-impl PointerRoot {
-    /// Returns the pointers of all channels.
-    pub fn pointers(&self) -> impl Iterator<Item = &str> {
-        let channels = self.animations.iter().flat_map(|animation| &animation.channels);
-        let extensions = channels.filter_map(|channel| channel.target.extensions.as_ref());
-        extensions.filter_map(|extensions| Some(extensions.animation_pointer.as_ref()?.pointer.as_str()))
-    }
-}
-
 #[derive(Deserialize)]
 pub(super) struct SceneRoot {
     #[serde(default, deserialize_with = "or_default")]
     pub nodes: Vec<Node>,
-    #[serde(default, deserialize_with = "or_default")]
-    pub scenes: Vec<Scene>,
-    /// The default scene.
-    pub scene: Option<usize>,
     #[serde(default, deserialize_with = "or_default")]
     pub meshes: Vec<Mesh>,
     #[serde(default, deserialize_with = "or_default")]
@@ -122,27 +76,14 @@ pub(super) struct Node {
     extensions: Option<Box<NodeExtensions>>,
 }
 
-/// The extensions of a node that change whether and where a mesh is shown.
+/// The extensions of a node that change where a mesh is shown.
 #[derive(Deserialize)]
 struct NodeExtensions {
     #[serde(rename = "EXT_mesh_gpu_instancing")]
     instancing: Option<IgnoredAny>,
-    #[serde(rename = "KHR_node_visibility")]
-    visibility: Option<NodeVisibility>,
-}
-
-#[derive(Deserialize)]
-struct NodeVisibility {
-    visible: Option<bool>,
 }
 
 impl Node {
-    /// Whether the node itself is visible, as the file stores it. One that is not visible hides all nodes below it, too.
-    pub fn is_visible(&self) -> bool {
-        let stored = self.extensions.as_ref().and_then(|extensions| extensions.visibility.as_ref()?.visible);
-        stored.unwrap_or(true)
-    }
-
     /// Returns a note if an extension shows the node's mesh at many places.
     pub fn instancing_note(&self, node: usize) -> Option<String> {
         self.extensions.as_ref()?.instancing.as_ref().map(|_| {

@@ -19,8 +19,13 @@ pub(super) struct Nodes {
     order: Vec<u32>,
 }
 
+/// Maximum number of ancestors of a node. Rigs have some dozens; where the states of a scene are not kept, a node costs as much as its
+/// ancestors at each time.
+const MAX_DEPTH: u32 = 1000;
+
 impl Nodes {
-    /// Creates the hierarchy of a file's nodes. A child that does not exist, a node with two parents, and a cycle are errors.
+    /// Creates the hierarchy of a file's nodes. A child that does not exist, a node with two parents, a cycle, and more
+    /// than [`MAX_DEPTH`] ancestors are errors.
     pub fn new(nodes: &[json::Node]) -> Result<Self, FormatError> {
         let refused = |node: usize, cause: String| Err(FormatError::part(format!("nodes[{node}]"), cause));
         let mut transforms = Vec::with_capacity(nodes.len());
@@ -54,6 +59,15 @@ impl Nodes {
             order.iter().for_each(|node| is_reached[*node as usize] = true);
             let first = is_reached.iter().position(|reached| !reached).unwrap_or_default();
             return refused(first, "its ancestors form a cycle".into());
+        }
+        // Parents come first.
+        let mut depths = vec![0_u32; nodes.len()];
+        for node in &order {
+            let depth = parents[*node as usize].map_or(0, |parent| depths[parent as usize] + 1);
+            if depth > MAX_DEPTH {
+                return refused(*node as usize, format!("it has more than {MAX_DEPTH} ancestors"));
+            }
+            depths[*node as usize] = depth;
         }
         Ok(Self { transforms, parents, order })
     }
@@ -131,6 +145,18 @@ mod tests {
         assert_eq!(nodes.len(), 3);
     }
 
+    #[test]
+    fn chains_of_nodes_have_a_limit() {
+        let chain = |count: usize| {
+            let node =
+                |n: usize| if n + 1 < count { format!(r#"{{"children":[{}]}}"#, n + 1) } else { "{}".into() };
+            nodes(&format!("[{}]", (0..count).map(node).collect::<Vec<_>>().join(",")))
+        };
+        assert!(chain(1 + MAX_DEPTH as usize).is_ok());
+        let refused = chain(2 + MAX_DEPTH as usize).err().unwrap();
+        assert_eq!(refused, "nodes[1001]: it has more than 1000 ancestors");
+    }
+
     /// A rotation that changes every bit, so that another order of products would show.
     #[test]
     fn single_nodes_have_the_transforms_that_all_nodes_have_together() {
@@ -177,6 +203,7 @@ mod tests {
         assert_eq!(nodes("[]").ok().unwrap().len(), 0);
         // The hierarchy of a chain is not traversed by recursion.
         let chain: Vec<_> = (1..=50_000).map(|n| format!(r#"{{"children":[{n}]}}"#)).collect();
-        assert_eq!(nodes(&format!("[{},{{}}]", chain.join(","))).ok().unwrap().len(), 50_001);
+        let refused = nodes(&format!("[{},{{}}]", chain.join(","))).err().unwrap();
+        assert_eq!(refused, "nodes[1001]: it has more than 1000 ancestors");
     }
 }

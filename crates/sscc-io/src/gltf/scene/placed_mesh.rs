@@ -10,7 +10,7 @@ use super::json::{self, PlacedRoot, SkinRoot};
 use super::nodes::{NODE_SIZE, Nodes};
 use super::place::{Place, SkinWeights, check_joints, check_positions};
 use super::shape::Shape;
-use super::shown::{Display, Shown, choose_shown, displays_of_nodes, shown_nodes};
+use super::shown::{Shown, choose_shown, shown_nodes};
 use super::skin::Skin;
 use crate::gltf::accessors::Accessors;
 use crate::gltf::buffers::Buffers;
@@ -21,9 +21,8 @@ use crate::gltf::{glb, select};
 use crate::named_groups::{GroupCollector, GroupsBy, NamedGroups};
 use crate::{FormatError, IoError, read_whole};
 
-/// A mesh of a glTF file without its morph targets, and its places: the nodes of the default scene that show it and are not
-/// hidden (KHR_node_visibility, unless an animation can show them); if there are none, all nodes that show it; if no node shows
-/// it, one place, in the mesh's own coordinates.
+/// A mesh of a glTF file without its morph targets, and its places: the nodes of the default scene that show it; if none
+/// does, the nodes of any scene; if no node shows it, one place, in the mesh's own coordinates.
 ///
 /// The world positions are those of the stored state, without an animation. A node without a skin maps the file's
 /// positions `p` to `M p`, where M is the product of the matrices of its ancestors, the outermost first, and of its own.
@@ -51,7 +50,7 @@ pub struct PlacedMesh {
 /// several have and none is named; when the name fits no mesh or node, several, or a mesh without triangles; when the
 /// node hierarchy or the skin is malformed (as [`read_scene`](super::read_scene)).
 pub fn read_placed_mesh(path: &Path, name: Option<&str>) -> Result<PlacedMesh, IoError> {
-    read_in(path, |root, placed, displays| choose_shown(root, placed, displays, name))
+    read_in(path, |root, placed| choose_shown(root, placed, name))
 }
 
 /// As [`read_placed_mesh`], for the mesh that [`read`](crate::gltf::read) chooses: models are in the coordinates of their
@@ -60,9 +59,9 @@ pub fn read_placed_mesh(path: &Path, name: Option<&str>) -> Result<PlacedMesh, I
 /// # Errors
 /// As [`read_placed_mesh`] and [`read`](crate::gltf::read).
 pub fn read_model_placement(path: &Path, name: Option<&str>) -> Result<PlacedMesh, IoError> {
-    read_in(path, |root, placed, displays| {
+    read_in(path, |root, placed| {
         let mesh = select::choose(root, name)?;
-        Ok(Shown { mesh, nodes: shown_nodes(placed, displays, mesh) })
+        Ok(Shown { mesh, nodes: shown_nodes(placed, mesh) })
     })
 }
 
@@ -71,12 +70,12 @@ pub fn read_model_placement(path: &Path, name: Option<&str>) -> Result<PlacedMes
 /// # Errors
 /// As [`read_placed_mesh`], and when a buffer is in another file.
 pub fn parse_placed_mesh(bytes: &[u8], name: Option<&str>) -> Result<PlacedMesh, FormatError> {
-    parse_in(bytes, None, |root, placed, displays| choose_shown(root, placed, displays, name))
+    parse_in(bytes, None, |root, placed| choose_shown(root, placed, name))
 }
 
 fn read_in(
     path: &Path,
-    choose: impl FnOnce(&Root, &PlacedRoot, &[Display]) -> Result<Shown, FormatError>,
+    choose: impl FnOnce(&Root, &PlacedRoot) -> Result<Shown, FormatError>,
 ) -> Result<PlacedMesh, IoError> {
     let folder = path.parent().unwrap_or(Path::new(""));
     parse_in(&read_whole(path)?, Some(folder), choose).map_err(|error| error.of(path))
@@ -85,13 +84,12 @@ fn read_in(
 fn parse_in(
     bytes: &[u8],
     folder: Option<&Path>,
-    choose: impl FnOnce(&Root, &PlacedRoot, &[Display]) -> Result<Shown, FormatError>,
+    choose: impl FnOnce(&Root, &PlacedRoot) -> Result<Shown, FormatError>,
 ) -> Result<PlacedMesh, FormatError> {
     let chunks = glb::split(bytes)?;
     let root = Root::parse(chunks.json)?;
     let placed: PlacedRoot = parse_parts(chunks.json)?;
-    let displays = displays_of_nodes(&placed.nodes, &placed.scenes, placed.scene, chunks.json);
-    let Shown { mesh: index, nodes: shown } = choose(&root, &placed, &displays)?;
+    let Shown { mesh: index, nodes: shown } = choose(&root, &placed)?;
     let mesh = &root.meshes[index];
     // Attributes of skins are not read where no node needs them: an error there must not refuse the file.
     let skin_of = |node: &usize| placed.nodes[*node].skin.map(|skin| skin as usize);

@@ -49,10 +49,12 @@ impl AnimatedScene {
     /// # Errors
     /// When there is no such animation, it has no key frames or is malformed, or the time is NaN.
     pub fn pose(&self, animation: Option<usize>, time: f64) -> Result<ScenePose<'_>, FormatError> {
-        let moved = match self.valid_animation(animation, time)? {
+        let mut moved = match self.valid_animation(animation, time)? {
             None => NodeStates::default(),
             Some(animation) => animation.moved_at(time, &self.nodes)?,
         };
+        // Weights of other nodes are never read, and not counted in the size of a state.
+        moved.weights.retain(|node, _| self.mesh_node(*node).is_some());
         let world = WorldTransforms::All(self.nodes.world_transforms(&moved.transforms));
         Ok(self.pose_of(Arc::new(SceneState { world, weights: moved.weights })))
     }
@@ -92,8 +94,8 @@ impl AnimatedScene {
 
     /// Returns the largest memory of the state of all nodes at one time (bytes).
     pub fn state_size(&self) -> u64 {
-        let mesh_nodes = self.mesh_nodes.iter().chain(&self.left_out);
-        let weights = mesh_nodes.map(|mesh_node| WEIGHTS_SIZE + 8 * mesh_node.morph_targets() as u64);
+        let weights =
+            self.mesh_nodes.iter().map(|mesh_node| WEIGHTS_SIZE + 8 * mesh_node.morph_targets() as u64);
         let world = self.nodes.len() as u64 * size_of::<DMat4>() as u64;
         STATE_SIZE + world + weights.sum::<u64>()
     }

@@ -12,7 +12,6 @@ use super::mesh_node::MeshNode;
 use super::nodes::{NODE_SIZE, Nodes};
 use super::place::check_joints;
 use super::shape::Shape;
-use super::shown::{Display, default_scene, displays_of_nodes, notes_on_displays};
 use super::skin::Skin;
 use crate::gltf::accessors::Accessors;
 use crate::gltf::buffers::Buffers;
@@ -27,8 +26,8 @@ use crate::{FormatError, IoError, read_whole};
 /// Maximum memory of the note on a node that is left out (bytes).
 const NOTE_SIZE: u64 = 256;
 
-/// Reads the nodes with a mesh, the skins and the animations of a glTF file. Nodes that a player does not show are left out
-/// with a note ([`AnimatedScene`]). Buffers may be in the file, or in files in its folder or below; symbolic links are followed.
+/// Reads the nodes with a mesh, the skins and the animations of a glTF file. Buffers may be in the file, or in files in
+/// its folder or below; symbolic links are followed.
 ///
 /// # Errors
 /// When the file cannot be read or is malformed, has a version other than 2.x, geometry that exists only compressed, or
@@ -78,40 +77,14 @@ fn parse_in(bytes: &[u8], folder: Option<&Path>) -> Result<AnimatedScene, Format
     let of_meshes = shown.into_iter().flat_map(|mesh| morph::notes(&root.meshes[mesh], mesh));
     let numbers = mesh_nodes.iter().map(|mesh_node| mesh_node.node);
     let of_nodes = numbers.filter_map(|node| scene.nodes[node].instancing_note(node));
-    let without_triangles = without_triangles(&mesh_nodes);
-    let mut notes: Vec<String> = of_meshes.chain(of_nodes).chain(without_triangles).collect();
+    let left_out = left_out(&mesh_nodes);
+    let notes = of_meshes.chain(of_nodes).chain(left_out).collect();
     mesh_nodes.retain(|mesh_node| !mesh_node.faces().is_empty());
-    let displays = displays_of_nodes(&scene.nodes, &scene.scenes, scene.scene, chunks.json);
-    let left_out = take_left_out(&mut mesh_nodes, &displays, default_scene(scene.scene), &mut notes);
-    Ok(AnimatedScene { nodes, mesh_nodes, left_out, skins, animations, infos, notes })
-}
-
-/// Removes and returns the nodes that a player does not show; none if it shows no mesh. Adds notes on them. `scene` is the
-/// number of the default scene.
-fn take_left_out(
-    mesh_nodes: &mut Vec<MeshNode>,
-    displays: &[Display],
-    scene: usize,
-    notes: &mut Vec<String>,
-) -> Vec<MeshNode> {
-    let of_meshes: Vec<Display> = mesh_nodes.iter().map(|mesh_node| displays[mesh_node.node]).collect();
-    if of_meshes.iter().all(|display| !display.is_shown()) {
-        let note = "players show none of its meshes, so all nodes with a mesh count: these are hidden, or outside scene";
-        notes.extend((!mesh_nodes.is_empty()).then(|| format!("{note} {scene}")));
-        return Vec::new();
-    }
-    notes.extend(notes_on_displays(&of_meshes, scene));
-    if of_meshes.iter().all(|display| display.is_shown()) {
-        return Vec::new();
-    }
-    let all = std::mem::take(mesh_nodes).into_iter();
-    let (shown, left_out) = all.partition(|mesh_node| displays[mesh_node.node].is_shown());
-    *mesh_nodes = shown;
-    left_out
+    Ok(AnimatedScene { nodes, mesh_nodes, skins, animations, infos, notes })
 }
 
 /// Returns a note on each node whose mesh has no triangles, although it has primitives of triangles.
-fn without_triangles(mesh_nodes: &[MeshNode]) -> impl Iterator<Item = String> {
+fn left_out(mesh_nodes: &[MeshNode]) -> impl Iterator<Item = String> {
     let left_out = mesh_nodes.iter().filter(|mesh_node| mesh_node.faces().is_empty());
     left_out.map(|MeshNode { node, mesh, .. }| {
         format!(

@@ -8,5 +8,5 @@ mod file;
 mod lists;
 mod number_types;
 mod places;
+mod poses;
 mod positions;
-mod shown;
