@@ -5,10 +5,7 @@ use std::path::{Path, PathBuf};
 
 use crate::file::{ending, folder};
 use crate::folder_files::{is_hidden, list_files};
-use crate::gltf::is_gltf;
-use crate::mesh::is_mesh_name;
-use crate::modes::{is_collection, read_collection};
-use crate::solid::is_solid_name;
+use crate::modes::{has_mesh, is_collection, read_collection};
 use crate::solid::tetgen::companion;
 use crate::{IoError, split_mesh_name};
 
@@ -46,11 +43,6 @@ pub fn is_folder_of_mesh(input: &Path, file: &Path) -> bool {
         _ => false,
     };
     has_mesh(file) && !is_hidden(file) && input.is_dir() && is_in()
-}
-
-/// Whether the ending is that of a file with a mesh.
-pub(crate) fn has_mesh(path: &Path) -> bool {
-    is_mesh_name(path) || is_gltf(path) || is_solid_name(path)
 }
 
 #[cfg(test)]

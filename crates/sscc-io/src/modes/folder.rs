@@ -10,8 +10,9 @@ use super::named_modes::NamedModes;
 use super::vtk_frames;
 use crate::error::shown_name;
 use crate::folder_files::list_files;
+use crate::gltf::is_gltf;
 use crate::mesh::{is_mesh_name, read_soup};
-use crate::mesh_files::has_mesh;
+use crate::solid::is_solid_name;
 use crate::solid::tetgen::other_of_pair;
 use crate::solid::vtk::{Displacement, is_vtk_name};
 use crate::{FormatError, IoError};
@@ -50,6 +51,11 @@ pub fn read(folder: &Path, neutral: &TriMesh, neutral_path: &Path) -> Result<Nam
     let modes = Modes::new(columns.len(), by_vertex).map_err(|error| request(error.to_string()))?;
     let name = |path: &PathBuf| path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
     Ok(NamedModes { modes, names: paths.iter().map(name).collect(), deviations: None })
+}
+
+/// Whether the ending is that of a file with a mesh.
+pub(crate) fn has_mesh(path: &Path) -> bool {
+    is_mesh_name(path) || is_gltf(path) || is_solid_name(path)
 }
 
 /// Whether the ending is that of a target or a frame.

@@ -21,6 +21,7 @@ use crate::file::{ending, read_whole, unsupported};
 
 pub use collection::is_collection;
 pub(crate) use collection::{MAX_COLLECTION_FILES, read_collection};
+pub(crate) use folder::has_mesh;
 pub use frame_reader::FrameReader;
 pub use frames::{Frames, read_frames};
 pub use named_modes::NamedModes;
