@@ -2,7 +2,8 @@
 //! variants that a test catches. `operators/` has the program that makes the variants.
 //!
 //! All variants are compiled at once, in a copy of the workspace, and selected when a test runs. The variants to run are drawn
-//! at random, if paths are given from the files whose names begin with them. Each runs the tests that reach it: those of its own module first, then the quickest, for at most T seconds.
+//! at random, if paths are given from the files whose names begin with them; `--write` replaces the rows of their folders in the
+//! record. Each runs the tests that reach it: those of its own module first, then the quickest, for at most T seconds.
 
 mod compile;
 mod programs;

@@ -70,7 +70,9 @@ pub fn run(variants: &[Variant], tests: &[Test], draw: &Draw, writes: bool) -> R
     let record = counted(variants, &verdicts);
     print!("{record}");
     if writes {
-        fs::write(root().join(RECORD), record).map_err(|error| format!("{RECORD}: {error}"))?;
+        let path = root().join(RECORD);
+        let before = fs::read_to_string(&path).unwrap_or_default();
+        fs::write(path, merged(&before, &record)).map_err(|error| format!("{RECORD}: {error}"))?;
     }
     Ok(())
 }
@@ -135,9 +137,9 @@ fn module(file: &str) -> String {
     file.trim_end_matches(".rs").replace('/', "::")
 }
 
-/// Returns the folder of a file.
+/// Returns the folder of a file; the file itself if it is in none.
 fn folder(file: &str) -> String {
-    file.rsplit_once('/').map_or("", |(folder, _)| folder).to_owned()
+    file.rsplit_once('/').map_or(file, |(folder, _)| folder).to_owned()
 }
 
 /// Counts variants, and what became of them, by folder.
@@ -161,6 +163,25 @@ fn counted(variants: &[Variant], verdicts: &[(String, Verdict)]) -> String {
         format!("{folder},{}\n", cells.join(","))
     });
     format!("{HEADER}\n{}", lines.collect::<String>())
+}
+
+/// Returns the rows of two records by folder: those of the later one, apart from folders of which it tried nothing.
+fn merged(before: &str, later: &str) -> String {
+    let rows = |record: &str| -> BTreeMap<String, String> {
+        let rows = record
+            .lines()
+            .skip(1)
+            .filter_map(|row| Some((row.split_once(',')?.0.to_owned(), row.to_owned())));
+        rows.collect()
+    };
+    let mut all = rows(later);
+    for (folder, row) in rows(before) {
+        if all.get(&folder).is_none_or(|later| later.split(',').nth(2) == Some("0")) {
+            all.insert(folder, row);
+        }
+    }
+    let lines = all.into_values().map(|row| row + "\n").collect::<String>();
+    format!("{HEADER}\n{lines}")
 }
 
 #[cfg(test)]
@@ -187,6 +208,16 @@ mod tests {
         assert_eq!([only("bounds/"), only("filter/")].map(|draw| drawn(&all, &draw).len()), [9, 0]);
     }
 
+    /// A run of some folders keeps the rows of the others.
+    #[test]
+    fn records_of_several_runs_are_one() {
+        let before = format!("{HEADER}\na,9,9,8,1,0\nb,5,5,5,0,0\nd,1,1,1,0,0\n");
+        let later = format!("{HEADER}\na,9,9,9,0,0\nb,5,0,0,0,0\nc,2,2,1,1,0\n");
+        let expected = format!("{HEADER}\na,9,9,9,0,0\nb,5,5,5,0,0\nc,2,2,1,1,0\nd,1,1,1,0,0\n");
+        assert_eq!(merged(&before, &later), expected);
+        assert_eq!(merged("", &later), later);
+    }
+
     #[test]
     fn verdicts_are_counted_by_folder() {
         let all = [variant(1, "bounds/a.rs"), variant(2, "bounds/b.rs"), variant(3, "query/hulls/c.rs")];
@@ -196,6 +227,9 @@ mod tests {
             ("query/hulls".to_owned(), Verdict::Unreached),
         ];
         assert_eq!(counted(&all, &verdicts), format!("{HEADER}\nbounds,2,2,1,1,0\nquery/hulls,1,1,0,0,1\n"));
-        assert_eq!((module("query/hulls/c.rs").as_str(), folder("a.rs").as_str()), ("query::hulls::c", ""));
+        assert_eq!(
+            (module("query/hulls/c.rs").as_str(), folder("a.rs").as_str()),
+            ("query::hulls::c", "a.rs")
+        );
     }
 }

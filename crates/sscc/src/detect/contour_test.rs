@@ -148,7 +148,7 @@ mod tests {
         for points in [[off, on], [on, off]] {
             assert!(!is_on_one_side([0.0, 0.0], [4.0, 0.0], points, 0.0));
         }
-        // Back along a nearly vertical edge.
+        // The second edge goes back along the first one, which is nearly vertical.
         assert!(!has_one_common_point([0.0, 0.0], [1e-20, 1.0], [2e-20, 0.5], 1e-16));
     }
 }

@@ -636,6 +636,8 @@ mutants! {
     LocalTableLonger: CaughtBy("lib certificates::local::corner_gaps::tests::stored_gaps_do_not_exceed_exact_distances");
     /// Certificates may have more numbers than 32 bits address.
     LocalAddressesUnlimited: CaughtBy("lib certificates::local::validation::tests::starts_have_32_bits");
+    /// Certificates may take more memory than 32-bit starts address.
+    LocalBytesUnlimited: CaughtBy("lib certificates::local::build::tests::starts_of_kept_certificates_have_32_bits");
     /// A pair of images is skipped though its ratio may be above the largest by the rounding of its distance.
     LocalLimitsWidened: CaughtBy("lib certificates::local::strain_search::tests::ratios_just_above_the_largest_are_found");
     /// The residuals of a fit are those of another affine map.

@@ -109,11 +109,17 @@ pub(crate) fn compute_local_certificates(
     Ok(all)
 }
 
+/// Returns the part of a memory whose numbers have starts of 32 bits.
+fn addressed_bytes(most_bytes: usize) -> usize {
+    let addressed = usize::try_from(MOST_BYTES).unwrap_or(usize::MAX);
+    with_mutant!(most_bytes.min(addressed), LocalBytesUnlimited, most_bytes)
+}
+
 /// Keeps the certificates of fewest modes, and at equal numbers of modes those of the largest nodes, while they fit into the
 /// memory. Keeps no certificate if they cover less than [`LEAST_PROVEN_SHARE`] of all triangles. `found` has the largest nodes
 /// first, and is sorted by node afterwards.
 fn keep_within(found: &mut Vec<(u32, LocalCertificate)>, hierarchy: &Hierarchy, most_bytes: usize) {
-    let most_bytes = most_bytes.min(usize::try_from(MOST_BYTES).unwrap_or(usize::MAX));
+    let most_bytes = addressed_bytes(most_bytes);
     let mut bytes = 0;
     found.sort_by_key(|(_, certificate)| certificate.modes.len());
     found.retain(|(_, certificate)| {

@@ -192,7 +192,7 @@ mod tests {
     use crate::TriMesh;
 
     #[test]
-    fn clearances_of_any_size_and_incomplete_lists() {
+    fn clearances_are_positive_numbers_and_an_incomplete_list_is_an_error() {
         for distance in [0.0, -1.0, f64::NAN, f64::INFINITY] {
             assert!(Clearance::new(distance).is_err(), "{distance}");
         }

@@ -600,10 +600,10 @@ fn modes_that_move_nothing_change_no_answer_where_norms_overflow() {
         let mut oracle =
             Query::without_certificates(&model, crate::parts::Scope::of(&model), Method::BruteForce).unwrap();
         let mut kinetic = KineticQuery::new(&more, &certificates).unwrap();
-        let way: Vec<f64> = (0..rank).map(|_| random.signed()).collect();
+        let direction: Vec<f64> = (0..rank).map(|_| random.signed()).collect();
         for step in 0..300 {
             let t = if step < 200 { 0.5 + f64::from(step) * 1e-3 } else { f64::from(step - 200) * 0.05 };
-            let mut q: Vec<f64> = way.iter().map(|x| x * t).collect();
+            let mut q: Vec<f64> = direction.iter().map(|x| x * t).collect();
             let expected = oracle.discrete(&q).unwrap();
             let far = [0.0, 1e300, 1.7e308, f64::MAX][step as usize / 20 % 4];
             q.extend([far, -far]);

@@ -202,7 +202,7 @@ mod tests {
         assert!(farthest > 0.3, "{farthest}");
     }
 
-    /// All roundings of a position go the same way: those of the sums after the mode, or those of the product and of the sum.
+    /// All roundings of a position have the same sign: those of the sums after the mode, or those of the product and of the sum.
     #[test]
     fn the_slack_covers_the_sum_of_the_mode_and_all_later_sums() {
         let power = |n: i32| 2.0_f64.powi(n);

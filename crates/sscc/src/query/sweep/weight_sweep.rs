@@ -235,11 +235,11 @@ mod tests {
     use crate::{Method, Modes, ReducedModel, TriMesh};
 
     /// Returns a small triangle, which the mode moves, and large ones at these heights.
-    fn plates(small: [DVec3; 3], way: DVec3, heights: &[f64]) -> ReducedModel {
+    fn plates(small: [DVec3; 3], displacement: DVec3, heights: &[f64]) -> ReducedModel {
         let plate = |z: f64| [[-4.0, -4.0], [4.0, -4.0], [0.0, 6.0]].map(|[x, y]| DVec3::new(x, y, z));
         let p: Vec<DVec3> = small.into_iter().chain(heights.iter().flat_map(|z| plate(*z))).collect();
         let faces = (0..p.len() as u32 / 3).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
-        let modes = (0..p.len()).map(|v| if v < 3 { way } else { DVec3::ZERO }).collect();
+        let modes = (0..p.len()).map(|v| if v < 3 { displacement } else { DVec3::ZERO }).collect();
         ReducedModel::new(TriMesh::new(p, faces).unwrap(), Modes::new(1, modes).unwrap()).unwrap()
     }
 

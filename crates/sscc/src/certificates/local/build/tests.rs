@@ -731,3 +731,10 @@ fn only_flat_patches_have_a_direction_across() {
         }
     }
 }
+
+#[test]
+fn starts_of_kept_certificates_have_32_bits() {
+    assert_eq!([0, 1, 1 << 30].map(addressed_bytes), [0, 1, 1 << 30]);
+    // A number of a list takes 8 bytes, and a start counts numbers.
+    assert!(addressed_bytes(usize::MAX) / 8 <= u32::MAX as usize);
+}

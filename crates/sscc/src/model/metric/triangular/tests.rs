@@ -54,7 +54,7 @@ fn growth_is_at_least_the_exact_one() {
 }
 
 #[test]
-fn numbers_of_known_factors() {
+fn bounds_of_known_factors_are_those_of_their_formulas() {
     let unit = f64::EPSILON;
     let near = |found: f64, wanted: f64| (found - wanted).abs() <= 1e-12 * wanted.abs();
     // The inverse [1 -L; 0 1] and the residual 0 are computed exactly; the bound of rounding is 10 units of 2 L + 2.
