@@ -42,14 +42,14 @@ type Mesh = (Vec<[f64; 3]>, Vec<[u32; 3]>);
 
 fn parse_obj(text: &str) -> Result<Mesh> {
     let (mut positions, mut faces) = (Vec::new(), Vec::new());
-    for (number, line) in text.lines().enumerate() {
-        let mut words = line.split_whitespace();
+    for (number, line) in text.replace("\r\n", "\n").split(['\n', '\r']).enumerate() {
+        let mut words = line.split('#').next().unwrap_or_default().split_whitespace();
         let parsed = match words.next() {
             Some("v") => {
                 let numbers: Vec<f64> = words.map_while(|word| word.parse().ok()).collect();
                 numbers.first_chunk().map(|position| positions.push(*position))
             }
-            Some("f") => {
+            Some("f" | "fo") => {
                 let count = positions.len() as i64;
                 let vertex = |word: &str| {
                     let number: i64 = word.split('/').next()?.parse().ok()?;
@@ -100,6 +100,7 @@ mod tests {
         let mesh =
             parse_obj("# two\nv 0 0 0\nv 1 0 0 # x\nv 0 1e0 0\nvn 0 0 1\nf 1/2/3 2 3\nf -3 -2 -1\n").unwrap();
         assert_eq!(mesh, (vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], vec![[0, 1, 2]; 2]));
+        assert_eq!(parse_obj("v 0 0 0\rv 1 0 0\r\nv 0 1 0\nfo 1 2 3 # 4\rf 1 2 3#\n").unwrap(), mesh);
         for wrong in ["v 1 2", "v 0 0 0\nf 1 1 1 1", "f 0 1 2", "f 1 2 x"] {
             assert!(parse_obj(wrong).unwrap_err().to_string().contains("line"), "{wrong}");
         }

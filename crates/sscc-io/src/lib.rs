@@ -117,7 +117,7 @@ pub use npy::{NpyWriter, write_npy};
 pub use npz::{NamedArray, NpzModel, read_npz_model, write_npz};
 pub use numbers::{Rows, read_matrix, read_rows, read_vector};
 pub use pose::{write_obj_pose, write_ply_pose};
-pub use solid::{VolumeOrSurface, read_volume_mesh, read_volume_or_surface};
+pub use solid::{VolumeOrSurface, read_volume_mesh, read_volume_mesh_with_warnings, read_volume_or_surface};
 pub use triangulate::triangulate;
 pub use vertex_numbers::read_vertex_numbers;
 pub use vtk_frames_writer::VtkFramesWriter;

@@ -5,7 +5,7 @@ use std::io::{ErrorKind, Read};
 use std::path::{Path, PathBuf};
 
 use serde_json::Value;
-use sscc_io::{Setting, has_file, read_whole};
+use sscc_io::{Message, Setting, check_replaceable, has_file, is_folder_of_mesh, linked_file, read_whole};
 
 use crate::error::{InSystem, Result, SimError};
 
@@ -37,19 +37,30 @@ pub fn remove_outputs(folder: &Path) -> Result<()> {
     OUTPUT_FILES.iter().try_for_each(|name| remove_file(&folder.join(name)))
 }
 
-/// Removes a file if it exists.
+/// Removes a file if it exists. A link stays, and the file to which it leads is removed.
 pub fn remove_file(path: &Path) -> Result<()> {
-    match fs::remove_file(path) {
+    match fs::remove_file(linked_file(path)?) {
         Err(error) if error.kind() != ErrorKind::NotFound => Err(error).system(path),
         _ => Ok(()),
     }
 }
 
+/// Returns an error if a file of a simulation cannot be written or removed later: it is read-only or no file, or the folder is
+/// read-only.
+pub fn check_outputs(folder: &Path) -> Result<()> {
+    let names = OUTPUT_FILES.iter().chain(&[CHECKPOINT]);
+    Ok(names.map(|name| folder.join(name)).try_for_each(|path| check_replaceable(&path))?)
+}
+
 /// Returns an error if a simulation in this folder would replace or remove one of these inputs, each a file, `FILE#NAME` or a
-/// folder of meshes. Links are followed.
+/// folder of meshes, or would add a mesh to such a folder. Links are followed.
 pub fn check_inputs(folder: &Path, inputs: &[PathBuf]) -> Result<()> {
     for name in OUTPUT_FILES.iter().chain(&[LOG, CHECKPOINT]) {
         let path = folder.join(name);
+        if inputs.iter().any(|input| is_folder_of_mesh(input, &path)) {
+            let cause = "would be a mesh of a folder that the scene reads: choose another folder with ";
+            return Err(SimError::refused(path.display(), Message::from(cause) + Setting::Out));
+        }
         let Ok(real) = fs::canonicalize(&path) else { continue }; // there is no such file
         if inputs.iter().any(|input| has_file(input, &real)) {
             let cause = "is an input of the scene: choose another folder with " + Setting::Out;
@@ -66,15 +77,21 @@ pub fn check_others(folder: &Path) -> Result<()> {
     if fs::metadata(log).is_ok_and(|log| log.len() > 0) {
         return Ok(());
     }
-    let exists = |path: &PathBuf| fs::symlink_metadata(path).is_ok();
     let checkpoint = folder.join(CHECKPOINT);
-    if exists(&checkpoint) {
+    if fs::symlink_metadata(&checkpoint).is_ok() {
         return if is_checkpoint(&checkpoint) { Ok(()) } else { Err(of_others(&checkpoint)) };
     }
-    match OUTPUT_FILES.iter().map(|name| folder.join(name)).find(exists) {
-        Some(path) if !has_results(folder) => Err(of_others(&path)),
-        _ => Ok(()),
+    match output_of_others(folder) {
+        Some(path) => Err(of_others(&path)),
+        None => Ok(()),
     }
+}
+
+/// Returns a file with the name of an output, if the folder has one and not the results of a simulation.
+pub fn output_of_others(folder: &Path) -> Option<PathBuf> {
+    let exists = |path: &PathBuf| fs::symlink_metadata(path).is_ok();
+    let output = OUTPUT_FILES.iter().map(|name| folder.join(name)).find(exists);
+    output.filter(|_| !has_results(folder))
 }
 
 /// Returns the error for a file that no simulation wrote.
@@ -193,6 +210,12 @@ mod tests {
             assert_eq!(message, format!("{}: {expected}", path.display()));
         }
         assert!(check("model.glb").is_ok() && check("out/sound.wav").is_ok());
+        // A folder that the scene reads would get another mesh.
+        fs::remove_file(at("out/animation.glb")).unwrap();
+        let message = check_inputs(&at("out"), &[at("out")]).unwrap_err().to_string();
+        let cause = "would be a mesh of a folder that the scene reads: choose another folder with out";
+        assert_eq!(message, format!("{}: {cause}", at("out/animation.glb").display()));
+        assert!(check_inputs(&at("other"), &[at("out")]).is_ok());
         #[cfg(unix)]
         {
             std::os::unix::fs::symlink(at("model.glb"), at("out/sound.wav")).unwrap();

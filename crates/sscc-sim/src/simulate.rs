@@ -3,11 +3,11 @@
 use std::path::{Path, PathBuf};
 
 use rayon::{ThreadPool, ThreadPoolBuilder};
-use sscc_io::{Setting, check_replaceable};
+use sscc_io::Setting;
 use sscc_tasks::{Cache, Shape, Watch, available_threads, make_folder, models_folder};
 
 use crate::error::{At, Result, SimError};
-use crate::files::{OUTPUT_FILES, check_inputs, check_others};
+use crate::files::{check_inputs, check_others, check_outputs};
 use crate::run::{
     FinishedRun, PreparedScene, RunOutcome, Summary, announcement, check_log_size, run, traditional_costs,
 };
@@ -42,7 +42,7 @@ pub struct Request {
 /// # Errors
 /// When the scene or a model cannot be read or computed; when the simulation cannot begin or continue ([`run`]), for
 /// example because bodies penetrate at the start or the folder belongs to another simulation; when a file that the simulation
-/// would replace or remove is an input of the scene, or is not of a simulation; when `watch` cancels the preparation; when no step
+/// would replace or remove is an input of the scene, is read-only, or is not of a simulation; when `watch` cancels the preparation; when no step
 /// was made.
 pub fn simulate(request: &Request, watch: &dyn Watch) -> Result<FinishedRun, SimError> {
     let scene = read_scene(&request.scene)?;
@@ -55,9 +55,7 @@ pub fn simulate(request: &Request, watch: &dyn Watch) -> Result<FinishedRun, Sim
     check_inputs(&folder, &inputs(&request.scene, &scene, models.as_deref()))?;
     check_others(&folder)?;
     make_folder(&folder)?;
-    if !request.restart {
-        OUTPUT_FILES.iter().try_for_each(|name| check_replaceable(&folder.join(name)))?;
-    }
+    check_outputs(&folder)?;
     let threads = request.threads.unwrap_or_else(available_threads);
     let pool = start_threads(ThreadPoolBuilder::new(), threads)?;
     let steps = request.steps.unwrap_or(scene.steps);

@@ -343,6 +343,41 @@ fn files_of_others_are_not_replaced() {
 }
 
 #[test]
+#[cfg(unix)]
+fn read_only_outputs_are_kept_and_links_stay() {
+    use std::os::unix::fs::{PermissionsExt, symlink};
+    let [folder, other] = [(); 2].map(|()| tempfile::tempdir().unwrap());
+    let at = |name: &str| folder.path().join(name);
+    let run = |steps: usize, restart: bool| {
+        let request = Request { steps: Some(steps), restart, ..request(folder.path()) };
+        simulate(&request, &()).map(|run| written(run).unwrap())
+    };
+    run(3, false).unwrap();
+    let set_mode = |name: &str, mode: u32| {
+        fs::set_permissions(at(name), fs::Permissions::from_mode(mode)).unwrap();
+    };
+    for name in ["animation.glb", "checkpoint.bin", "sound_float.wav"] {
+        set_mode(name, 0o444);
+        let before = contents(folder.path());
+        for restart in [false, true] {
+            let message = run(5, restart).err().unwrap().to_string();
+            assert!(message.contains(&format!("{name}: cannot be written: it is read-only")), "{message}");
+            assert!(contents(folder.path()) == before, "{name}");
+        }
+        set_mode(name, 0o644);
+    }
+    // An output in another folder, by a link.
+    let kept = other.path().join("kept.glb");
+    fs::rename(at("animation.glb"), &kept).unwrap();
+    symlink(&kept, at("animation.glb")).unwrap();
+    for restart in [false, true] {
+        run(3, restart).unwrap();
+        assert!(fs::symlink_metadata(at("animation.glb")).unwrap().is_symlink());
+        assert!(fs::symlink_metadata(&kept).unwrap().is_file());
+    }
+}
+
+#[test]
 fn folders_of_simulations_are_used_again() {
     let folder = tempfile::tempdir().unwrap();
     let at = |name: &str| folder.path().join(name);

@@ -160,7 +160,7 @@ impl Builder {
         if self.vertices() > 0 && self.elements() == 0 && self.faces.triangle_count() == 0 {
             return Err(SolidError::NoElements.into());
         }
-        self.finish_any()?.into_volume()
+        self.finish_any()?.into_volume().map(|(mesh, _)| mesh)
     }
 
     /// Returns the solid, or the surface of a file without solid elements, if all its indices are valid.

@@ -57,6 +57,37 @@ impl ListedFaces {
         self.unread.as_deref()
     }
 
+    /// Returns lines about the listed faces that are no faces of the elements of a solid. Its modes do not move them.
+    pub fn left_out(&self, solid: &VolumeMesh) -> Vec<String> {
+        let triangles = |(fan, middles): &Face<'_>| if middles.is_some() { 4 } else { fan.len() };
+        let free: usize = self.free_faces(solid).iter().map(triangles).sum();
+        let of_free = (free > 0).then(|| {
+            format!(
+                "{free} triangles of the file belong to no element: they have no elasticity and are left out"
+            )
+        });
+        of_free.into_iter().chain(self.unread.clone()).collect()
+    }
+
+    /// Returns a line about listed faces of second order that have the corners of a face of an element, but other middles.
+    pub(super) fn other_middles(&self, solid: &VolumeMesh) -> Option<String> {
+        let of_second_order = self.larger.iter().filter_map(|face| match face.kind {
+            Kind::SecondOrder(middles) => Some((*solid.surface().get(face.start)?, middles)),
+            Kind::Polygon(_) => None,
+        });
+        let (faces, parts): (Vec<_>, Vec<_>) =
+            of_second_order.map(|(face, middles)| (face, quarters(face, middles))).unzip();
+        let (is_face, is_part) = (solid.has_faces(&faces), solid.has_faces(parts.as_flattened()));
+        let of_parts = is_part.as_chunks::<4>().0;
+        let count =
+            is_face.iter().zip(of_parts).filter(|(is_face, parts)| **is_face && parts.contains(&false));
+        let count = count.count();
+        (count > 0).then(|| {
+            format!("{count} faces of 6 nodes have the corners of faces of elements, but other nodes between them: their own \
+                     nodes are left out")
+        })
+    }
+
     /// Returns the triangles of the listed faces that belong to no element of a solid, with lines about polygons whose
     /// triangles the file does not determine.
     pub(super) fn free_triangles(

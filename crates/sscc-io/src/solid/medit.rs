@@ -29,7 +29,7 @@ const HIGHER_FACES: [&str; 2] = ["Triangles", "Quadrilaterals"];
 /// When the version or dimension is not supported, a section is shorter than its count or repeated, solid elements have
 /// another kind, or text follows `End`; else as [`read_volume_mesh`](super::read_volume_mesh).
 pub fn parse(bytes: &[u8]) -> Result<VolumeMesh, FormatError> {
-    parse_any(bytes)?.into_volume()
+    parse_any(bytes)?.into_volume().map(|(mesh, _)| mesh)
 }
 
 /// As [`parse`], but for a file without tetrahedra and cubes returns the surface of its faces.

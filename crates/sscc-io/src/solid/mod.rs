@@ -43,6 +43,14 @@ const SUPPORTED: &str =
 /// a coordinate is beyond [`sscc::limits`], an index names no vertex, an element names a vertex twice, is duplicated or
 /// is neither a tetrahedron of 4 nodes (in files of gmsh and VTK also 10) nor an 8-node hexahedron, or there is no element.
 pub fn read_volume_mesh(path: &Path) -> Result<VolumeMesh, IoError> {
+    read_volume_mesh_with_warnings(path).map(|(mesh, _)| mesh)
+}
+
+/// As [`read_volume_mesh`], but also returns lines about faces that the file lists and no element has.
+///
+/// # Errors
+/// As [`read_volume_mesh`].
+pub fn read_volume_mesh_with_warnings(path: &Path) -> Result<(VolumeMesh, Vec<String>), IoError> {
     read_volume_or_surface(path)?.into_volume().map_err(|error| error.of(path))
 }
 

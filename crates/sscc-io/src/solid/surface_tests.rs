@@ -203,16 +203,21 @@ fn faces_of_no_element_are_added_to_the_surface() {
     assert_eq!(lines, ["1 tetrahedra outside the surface of the file are left out".to_owned(), added(1)]);
 }
 
-/// The solids for modes have their elements alone.
+/// The solids for modes have their elements alone; faces that they leave out have a line.
 #[test]
-fn solids_ignore_listed_faces_of_no_element() {
+fn solids_leave_out_listed_faces_of_no_element() {
     let mut free = filling();
     free.faces = vec![vec![0, 3, 4]];
     assert_eq!(free.surface().0.faces().len(), 7);
-    for (content, tets, outside) in [(two_regions(), 1, 1), (free, 2, 0), (filling(), 1, 1)] {
+    let line = "1 triangles of the file belong to no element: they have no elasticity and are left out";
+    for (content, tets, outside, expected) in
+        [(two_regions(), 1, 1, &[][..]), (free, 2, 0, &[line]), (filling(), 1, 1, &[])]
+    {
         for (name, found) in content.read() {
-            let found = found.into_volume().unwrap().solid(&PartialMaterial::default()).unwrap();
+            let (mesh, lines) = found.into_volume().unwrap();
+            let found = mesh.solid(&PartialMaterial::default()).unwrap();
             assert_eq!((found.solid.tets().len(), found.outside), (tets, outside), "{name}");
+            assert_eq!(lines, expected, "{name}");
         }
     }
 }
@@ -277,8 +282,26 @@ fn curved_triangles_of_no_element_keep_their_middles() {
     assert_eq!(mesh.faces()[4..], [[4, 7, 9], [7, 5, 8], [9, 8, 6], [7, 8, 9]]);
     assert!(lines[0].starts_with("4 triangles of the file belong to no element"), "{lines:?}");
     let gmsh = content.gmsh().replace("2 2 0 5 6 7 ", "2 9 0 5 6 7 8 9 10 ");
-    let of_gmsh = gmsh::parse_any(gmsh.as_bytes()).unwrap().into_surface().unwrap();
-    assert_eq!(of_gmsh, (mesh, lines));
+    let of_gmsh = gmsh::parse_any(gmsh.as_bytes()).unwrap();
+    let (_, left_out) = of_gmsh.clone().into_volume().unwrap();
+    assert!(left_out[0].starts_with("4 triangles of the file belong to no element"), "{left_out:?}");
+    assert_eq!(of_gmsh.into_surface().unwrap(), (mesh, lines));
+}
+
+/// A curved face on a tetrahedron of four nodes.
+#[test]
+fn faces_whose_middles_are_not_those_of_their_element_have_a_line() {
+    let mut content = listed_tet();
+    content.points.extend([[1.0, 1.0, 0.1], [1.5, 1.0, 1.0], [1.5, 1.0, 0.2]]);
+    let found = |face: &str| {
+        let gmsh = content.gmsh().replace("2 2 0 1 2 3 ", face);
+        gmsh::parse_any(gmsh.as_bytes()).unwrap().into_surface().unwrap()
+    };
+    let (mesh, lines) = found("2 2 0 1 2 3 ");
+    assert_eq!((mesh.faces().len(), lines.len()), (4, 0));
+    let expected = "1 faces of 6 nodes have the corners of faces of elements, but other nodes between them: their own nodes \
+                    are left out";
+    assert_eq!(found("2 9 0 1 2 3 5 6 7 "), (mesh, vec![expected.to_owned()]));
 }
 
 #[test]

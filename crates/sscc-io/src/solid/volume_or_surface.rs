@@ -31,10 +31,13 @@ impl VolumeOrSurface {
         Self::Volume { mesh, faces: ListedFaces::default() }
     }
 
-    /// Returns the volumetric mesh.
-    pub(crate) fn into_volume(self) -> Result<VolumeMesh, FormatError> {
+    /// Returns the volumetric mesh, and lines about listed faces that belong to no element.
+    pub(crate) fn into_volume(self) -> Result<(VolumeMesh, Vec<String>), FormatError> {
         match self {
-            Self::Volume { mesh, .. } => Ok(mesh),
+            Self::Volume { mesh, faces } => {
+                let left_out = faces.left_out(&mesh);
+                Ok((mesh, left_out))
+            }
             Self::Surface { mesh, .. } => {
                 let cause = format!(
                     "the mesh has no elements: it is a surface of {} triangles; add tetrahedra or hexahedra",
@@ -66,6 +69,7 @@ fn surface(solid: &VolumeMesh, faces: &ListedFaces) -> Result<(TriMesh, Vec<Stri
         warnings.push(format!("{left_out} tetrahedra outside the surface of the file are left out"));
     }
     warnings.extend(faces.unread().map(str::to_owned));
+    warnings.extend(faces.other_middles(solid));
     if free.is_empty() {
         return Ok((of_elements, warnings));
     }

@@ -11,6 +11,8 @@ pub(super) struct Words<'a> {
     at: usize,
     /// Line of the last word, from 1. Line ends within bytes are not counted.
     line: usize,
+    /// The end of the last run of CR that no LF follows. Without it, each line of a long run would search the rest of the run.
+    lone_returns: usize,
     comments: bool,
     /// Whether places are byte offsets (binary files).
     pub binary: bool,
@@ -21,7 +23,7 @@ impl<'a> Words<'a> {
     pub fn new(bytes: &'a [u8], comments: bool) -> Result<Self, FormatError> {
         Lines::new(bytes)?; // an error for UTF-16
         let at = if bytes.starts_with(b"\xef\xbb\xbf") { 3 } else { 0 };
-        Ok(Self { bytes, at, line: 1, comments, binary: false })
+        Ok(Self { bytes, at, line: 1, lone_returns: 0, comments, binary: false })
     }
 
     /// Returns the line of the last word; in binary files, the offset of the next byte.
@@ -114,13 +116,24 @@ impl<'a> Words<'a> {
     pub fn rest_of_line(&mut self) -> &'a [u8] {
         let rest = &self.bytes[self.at..];
         let line = &rest[..rest.iter().position(|b| is_line_end(*b)).unwrap_or(rest.len())];
-        let end = &rest[line.len()..];
-        let returns = end.iter().take_while(|b| **b == b'\r').count();
-        let size = if end.get(returns) == Some(&b'\n') { returns + 1 } else { returns.min(1) };
-        let places = self.at + line.len()..self.at + line.len() + size;
-        self.at = places.end;
-        self.line += places.filter(|at| ends_line(self.bytes, *at)).count();
+        let end = self.at + line.len();
+        self.at = end + self.line_end(end);
+        self.line += (end..self.at).filter(|at| ends_line(self.bytes, *at)).count();
         line
+    }
+
+    /// Returns the number of bytes of the line end at this place.
+    fn line_end(&mut self, at: usize) -> usize {
+        if at < self.lone_returns {
+            return 1;
+        }
+        let end = &self.bytes[at..];
+        let returns = end.iter().take_while(|b| **b == b'\r').count();
+        if end.get(returns) == Some(&b'\n') {
+            return returns + 1;
+        }
+        self.lone_returns = at + returns;
+        returns.min(1)
     }
 
     /// Skips a line, which may be empty; an error at the end of the file.
@@ -184,5 +197,17 @@ mod tests {
         assert_eq!(words.word("ASCII or BINARY").unwrap(), "ASCII");
         let mut words = Words::new(b"a\rb\nc", false).unwrap();
         assert_eq!([(); 3].map(|()| words.rest_of_line()), [b"a", b"b", b"c"]);
+        let mut words = Words::new(b"a\r\r\rb\r\r\nc", false).unwrap();
+        assert_eq!([(); 5].map(|()| words.rest_of_line()), [&b"a"[..], b"", b"", b"b", b"c"]);
+        assert_eq!((words.place(), words.rest_of_line()), (Place::Line(6), &b""[..]));
+    }
+
+    /// The square of this number would take an hour.
+    #[test]
+    fn a_long_run_of_returns_takes_linear_time() {
+        let text = [&b"a"[..], &[b'\r'; 4_000_000]].concat();
+        let mut words = Words::new(&text, false).unwrap();
+        assert!(!words.skip_past_line("$End"));
+        assert_eq!(words.place(), Place::Line(4_000_001));
     }
 }

@@ -13,7 +13,9 @@ use sscc_io::{Message, Setting, read_whole, write_whole};
 
 use super::history::{History, StateLayout};
 use crate::error::{InSystem, Result, SimError};
-use crate::files::{CHECKPOINT, LOG, check_others, is_checkpoint, of_others, remove_file, unsealed};
+use crate::files::{
+    CHECKPOINT, LOG, check_others, is_checkpoint, of_others, output_of_others, remove_file, unsealed,
+};
 
 /// Size of the simulation's digest, with which both files begin (bytes).
 const DIGEST: usize = 32;
@@ -75,9 +77,9 @@ impl StateLog {
         (&mut file).take(recognised_bytes() as u64).read_to_end(&mut start).system(&path)?;
         let is_own = start.starts_with(&digest);
         // A file without a state has nothing to lose: empty, or a digest alone, where a simulation was killed before it wrote a
-        // state. A checkpoint belongs to a damaged log.
+        // state. Since any 32 bytes can be a digest, they do not vouch for other files. A checkpoint belongs to a damaged log.
         let is_known = start.is_empty()
-            || start.len() == DIGEST
+            || start.len() == DIGEST && output_of_others(folder).is_none()
             || is_own
             || is_log(&start)
             || is_checkpoint(&folder.join(CHECKPOINT));
@@ -335,6 +337,12 @@ mod tests {
         // An empty file has nothing to lose.
         fs::write(&path, b"").unwrap();
         assert!(open(folder.path(), 1).is_ok());
+        // 32 bytes may be a digest, but say nothing about a file beside them.
+        fs::write(&path, &text[..DIGEST]).unwrap();
+        fs::write(folder.path().join("report.html"), b"x").unwrap();
+        let refused = StateLog::open(folder.path(), [1; DIGEST], StateLayout::new([1]), true);
+        assert!(refused.err().unwrap().to_string().contains("states.log: exists and is not of a simulation"));
+        assert_eq!(fs::read(&path).unwrap(), &text[..DIGEST]);
     }
 
     #[test]

@@ -9,6 +9,7 @@ use super::interval_tree::IntervalTree;
 use super::moving_mesh::MovingMesh;
 use super::node_boxes::boxes;
 use super::request::Detection;
+use super::scene_size::check_colliding;
 use super::worker::{Side, read_all};
 use crate::error::{At, Result};
 
@@ -21,7 +22,7 @@ impl IgnoredBetween {
     /// lower number.
     pub fn find(request: &Detection, meshes: &mut [MovingMesh<'_>]) -> Result<Self> {
         let Some(rings) = request.ignore_rest else { return Ok(Self::default()) };
-        let mut found = BTreeMap::new();
+        let (mut found, mut ignored) = (BTreeMap::new(), 0);
         let mut sides: Vec<Side<'_, '_>> = meshes.iter().map(Side::new).collect();
         read_all(&mut sides, 0, false)?;
         let boxes = boxes(&sides);
@@ -37,7 +38,10 @@ impl IgnoredBetween {
                 let pairs = x.detector.against(&x.x_t0, &mut y.detector, &y.x_t0).at(place)?.to_vec();
                 if !pairs.is_empty() {
                     let around = surroundings_between_meshes([&x.detector, &y.detector], &pairs, rings);
-                    found.insert([a, b], around.at(place)?);
+                    let around = around.at(place)?;
+                    ignored += around.len();
+                    check_colliding(found.len() + 1, ignored, place, request)?;
+                    found.insert([a, b], around);
                 }
             }
         }

@@ -2,23 +2,15 @@
 
 use std::sync::Arc;
 
-use glam::DVec3;
-use sscc_io::Message;
-
 use super::ignored_between::IgnoredBetween;
 use super::interval_tree::IntervalTree;
 use super::moving_mesh::MovingMesh;
 use super::node_boxes::boxes;
 use super::request::Detection;
-use super::scene_size::way_out;
+use super::scene_size::check_colliding;
 use super::worker::{QueryResult, Side, query, read_all};
-use crate::TaskError;
 use crate::error::{At, Result};
-use crate::text::grouped;
-
-/// Maximum number of pairs of nodes that collide at one time: the answers of a frame take less than a GiB, unless they have many pairs
-/// of triangles each. A few frames for each thread wait until those before them are written.
-const MAX_COLLIDING: usize = 1 << 20;
+use glam::DVec3;
 
 /// A detector for each mesh, and its positions at one frame. The scene and all positions are evaluated once for all pairs.
 pub(super) struct NodePairs<'m, 'w> {
@@ -59,14 +51,7 @@ impl<'m, 'w> NodePairs<'m, 'w> {
                 if result.pairs.is_empty() {
                     continue;
                 }
-                if found.len() == MAX_COLLIDING {
-                    let cause =
-                        format!("more than {} pairs of nodes collide: ", grouped(MAX_COLLIDING as u64));
-                    return Err(TaskError::refused(
-                        mesh.place(frame),
-                        Message::from(cause) + way_out(request),
-                    ));
-                }
+                check_colliding(found.len() + 1, 0, || mesh.place(frame), request)?;
                 if request.has_positions {
                     let mut shared = |node: usize, side: &Side<'_, '_>| {
                         Arc::clone(positions[node].get_or_insert_with(|| Arc::new(side.positions())))

@@ -18,6 +18,13 @@ const MAX_SIZE: u64 = 1 << 25;
 /// take some kB, however few triangles it has.
 const MIN_TRIANGLES: u64 = 64;
 
+/// Maximum number of pairs of nodes that collide at one time: the answers of a frame take less than a GiB, unless they have many pairs
+/// of triangles each. A few frames for each thread wait until those before them are written.
+const MAX_COLLIDING: usize = 1 << 20;
+
+/// Maximum number of ignored pairs of triangles of all pairs of nodes (0.5 GiB). The pairs of two nodes have a limit of their own.
+const MAX_IGNORED: usize = 1 << 26;
+
 /// Refuses nodes that have too many triangles or vertices together, or are too many.
 pub(super) fn check_scene_size(file: &Path, nodes: &[MeshNode], request: &Detection) -> Result<()> {
     let sizes = nodes.iter().map(|node| [node.faces().len() as u64, node.rest_positions().len() as u64]);
@@ -57,8 +64,24 @@ fn reason_against(nodes: impl Iterator<Item = [u64; 2]>) -> Option<String> {
     ))
 }
 
+/// Refuses a number of pairs of nodes that collide at one time, or of pairs of triangles that are ignored between nodes.
+pub(super) fn check_colliding(
+    nodes: usize,
+    ignored: usize,
+    place: impl FnOnce() -> String,
+    request: &Detection,
+) -> Result<()> {
+    let (most, what) = match (nodes > MAX_COLLIDING, ignored > MAX_IGNORED) {
+        (true, _) => (MAX_COLLIDING, "nodes collide"),
+        (_, true) => (MAX_IGNORED, "triangles of different nodes would be ignored"),
+        _ => return Ok(()),
+    };
+    let cause = format!("more than {} pairs of {what}: ", grouped(most as u64));
+    Err(TaskError::refused(place(), Message::from(cause) + way_out(request)))
+}
+
 /// Returns how to ask for a single node.
-pub(super) fn way_out(request: &Detection) -> Message {
+fn way_out(request: &Detection) -> Message {
     match request.motion {
         MeshMotion::Animation(_) => "select a node by " + Setting::Node,
         _ => "name a node, as in FILE#NODE".into(),
@@ -71,6 +94,21 @@ mod tests {
 
     use super::*;
     use crate::detection::{AnimationMotion, Times, detect};
+
+    #[test]
+    fn pairs_of_nodes_and_ignored_pairs_have_a_maximum() {
+        let request = Detection::default();
+        let check = |nodes, ignored| check_colliding(nodes, ignored, || "a.glb".into(), &request);
+        assert!(check(MAX_COLLIDING, MAX_IGNORED).is_ok());
+        let message = |nodes, ignored| check(nodes, ignored).unwrap_err().to_string();
+        let end = "name a node, as in FILE#NODE";
+        assert_eq!(
+            message(MAX_COLLIDING + 1, 0),
+            format!("a.glb: more than 1,048,576 pairs of nodes collide: {end}")
+        );
+        let cause = "a.glb: more than 67,108,864 pairs of triangles of different nodes would be ignored";
+        assert_eq!(message(1, MAX_IGNORED + 1), format!("{cause}: {end}"));
+    }
 
     /// 2^19 nodes of one triangle are allowed, and not one more.
     #[test]

@@ -52,6 +52,8 @@ pub enum SolidSource {
         boundary: Boundary,
         /// Origin of its material.
         material: MaterialOrigin,
+        /// Lines about faces of its file that belong to no element.
+        warnings: Vec<String>,
     },
 }
 
@@ -103,7 +105,7 @@ impl SolidSource {
         let meshed = solid.solid(material)?;
         let material = MaterialOrigin::new(material, &meshed.stated);
         let boundary = meshed.solid.boundary()?;
-        Ok(Self::Whole { meshed, boundary, material })
+        Ok(Self::Whole { meshed, boundary, material, warnings: Vec::new() })
     }
 
     /// Reads a surface and the solid in which it is embedded: see [`SolidSource::embedded`]. All lengths of both are
@@ -146,24 +148,26 @@ impl SolidSource {
         if !is_solid(path) {
             return surface(read_surface(path)?);
         }
-        let file = match read_volume_or_surface(path)? {
+        let (file, left_out) = match read_volume_or_surface(path)? {
             VolumeOrSurface::Surface { mesh, warnings } => return surface((mesh, warnings)),
-            // Faces beside the elements have no elasticity.
-            VolumeOrSurface::Volume { mesh, .. } => mesh,
+            VolumeOrSurface::Volume { mesh, faces } => {
+                let left_out = faces.left_out(&mesh);
+                (mesh, left_out)
+            }
         };
         if resolution.is_some() {
             let place = Setting::Resolution + " is for surfaces";
             return Err(TaskError::refused(place, "this file has its own elements"));
         }
-        Self::whole(&file.scaled(scale)?, material)
+        Ok(Self::whole(&file.scaled(scale)?, material)?.with_warnings(left_out))
     }
 
-    /// Adds lines about the file of its surface.
+    /// Adds lines about the file of its surface, or about faces that belong to no element.
     #[must_use]
-    pub(crate) fn with_warnings(mut self, lines: Vec<String>) -> Self {
-        if let Self::Around { warnings, .. } | Self::Within { warnings, .. } = &mut self {
-            *warnings = lines;
-        }
+    pub fn with_warnings(mut self, lines: Vec<String>) -> Self {
+        let (Self::Around { warnings, .. } | Self::Within { warnings, .. } | Self::Whole { warnings, .. }) =
+            &mut self;
+        *warnings = lines;
         self
     }
 
@@ -184,15 +188,15 @@ impl SolidSource {
         }
     }
 
-    /// Returns a note on elements that were omitted, on vertices of the surface outside the solid, and on content of the
-    /// surface's file whose meaning is not clear, if there are any.
+    /// Returns a note on elements that were omitted, on vertices of the surface outside the solid, on content of the
+    /// surface's file whose meaning is not clear, and on faces that belong to no element, if there are any.
     pub fn note(&self) -> Option<String> {
         let (left_out, outside, warnings) = match self {
             Self::Around { warnings, .. } => (0, None, &warnings[..]),
             Self::Within { embedded, left_out, warnings, .. } => {
                 (*left_out, embedded.outside(), &warnings[..])
             }
-            Self::Whole { meshed, .. } => (meshed.outside, None, &[][..]),
+            Self::Whole { meshed, warnings, .. } => (meshed.outside, None, &warnings[..]),
         };
         let left_out = (left_out > 0)
             .then(|| format!("{left_out} tetrahedra outside the surface of the file are left out"));

@@ -4,7 +4,7 @@ use std::env;
 use std::path::{Path, PathBuf};
 
 use sscc::TriMesh;
-use sscc_io::{Message, Setting, read_mesh_with_warnings, read_volume_mesh};
+use sscc_io::{Message, Setting, read_mesh_with_warnings, read_volume_mesh, read_volume_mesh_with_warnings};
 use sscc_modes::shapes::{hare, serpent, spring_of};
 use sscc_solid::PartialMaterial;
 
@@ -101,10 +101,11 @@ impl Shape {
                 return surface(mesh, source, note);
             }
             Self::File(path) => {
-                let file = read_volume_mesh(path)?;
+                let (file, left_out) = read_volume_mesh_with_warnings(path)?;
                 let factor = resize.factor(file.vertices()).in_file(path)?;
                 let file = file.scaled(factor).in_file(path)?;
-                return solid(SolidSource::whole(&file, material).in_file(path)?, file_name(path), factor);
+                let found = SolidSource::whole(&file, material).in_file(path)?;
+                return solid(found.with_warnings(left_out), file_name(path), factor);
             }
             Self::Embedded { surface, solid: path } => {
                 let (mesh, warnings) = read_embedded(surface).in_file(surface)?;

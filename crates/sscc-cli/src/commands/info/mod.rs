@@ -62,7 +62,10 @@ impl Report {
                 return Ok(Self::Model(Model::of(&model, info).with_weights(mode_weights)));
             }
             _ if is_solid(path) => match read_volume_or_surface(path)? {
-                VolumeOrSurface::Volume { mesh, .. } => return Ok(Self::Solid(Solid::of(&mesh))),
+                VolumeOrSurface::Volume { mesh, faces } => {
+                    let left_out = faces.left_out(&mesh);
+                    return Ok(Self::Solid(Solid::of(&mesh, left_out)));
+                }
                 VolumeOrSurface::Surface { mesh, warnings } => {
                     return Ok(Self::surface(path, &mesh, &warnings));
                 }

@@ -43,7 +43,8 @@ struct Material {
 }
 
 impl Solid {
-    pub fn of(file: &VolumeMesh) -> Self {
+    /// `left_out` are lines about faces that belong to no element.
+    pub fn of(file: &VolumeMesh, left_out: Vec<String>) -> Self {
         let mut elements = vec![0; file.materials().len()];
         file.element_material().iter().for_each(|material| elements[*material as usize] += 1);
         let material =
@@ -58,8 +59,9 @@ impl Solid {
         let surface = SolidSource::whole(file, &PartialMaterial::default());
         let (boundary, refusal) = match surface {
             Ok(source) => {
-                source.note().into_iter().for_each(note);
-                (Some(Surface::of(source.mesh())), None)
+                let boundary = Surface::of(source.mesh());
+                source.with_warnings(left_out).note().into_iter().for_each(note);
+                (Some(boundary), None)
             }
             Err(error) => (None, Some(flags::message(&error))),
         };

@@ -37,7 +37,7 @@ use version::Version;
 /// end, solid elements have another kind, or tags of nodes are repeated or unknown; else as
 /// [`read_volume_mesh`](super::read_volume_mesh).
 pub fn parse(bytes: &[u8]) -> Result<VolumeMesh, FormatError> {
-    parse_any(bytes)?.into_volume()
+    parse_any(bytes)?.into_volume().map(|(mesh, _)| mesh)
 }
 
 /// As [`parse`], but for a file without tetrahedra and hexahedra returns the surface of its faces.

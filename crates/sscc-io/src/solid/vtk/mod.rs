@@ -42,7 +42,7 @@ pub fn is_vtk_name(path: &Path) -> bool {
 /// When the file is malformed, its arrays do not have the lengths that it states, a solid cell is neither a tetrahedron
 /// of 4 or 10 nodes nor a hexahedron of 8; else as [`read_volume_mesh`](super::read_volume_mesh).
 pub fn parse(bytes: &[u8]) -> Result<VolumeMesh, FormatError> {
-    parse_any(bytes)?.into_volume()
+    parse_any(bytes)?.into_volume().map(|(mesh, _)| mesh)
 }
 
 /// As [`parse`], but for a file without tetrahedra and hexahedra returns the surface of its faces.
