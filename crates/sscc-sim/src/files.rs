@@ -48,7 +48,7 @@ pub fn remove_file(path: &Path) -> Result<()> {
 /// Returns an error if a file of a simulation cannot be written or removed later: it is read-only or no file, or the folder is
 /// read-only.
 pub fn check_outputs(folder: &Path) -> Result<()> {
-    let names = OUTPUT_FILES.iter().chain(&[CHECKPOINT]);
+    let names = OUTPUT_FILES.iter().chain(&[LOG, CHECKPOINT]);
     Ok(names.map(|name| folder.join(name)).try_for_each(|path| check_replaceable(&path))?)
 }
 
@@ -57,7 +57,8 @@ pub fn check_outputs(folder: &Path) -> Result<()> {
 pub fn check_inputs(folder: &Path, inputs: &[PathBuf]) -> Result<()> {
     for name in OUTPUT_FILES.iter().chain(&[LOG, CHECKPOINT]) {
         let path = folder.join(name);
-        if inputs.iter().any(|input| is_folder_of_mesh(input, &path)) {
+        let target = linked_file(&path)?;
+        if inputs.iter().any(|input| is_folder_of_mesh(input, &path) || is_folder_of_mesh(input, &target)) {
             let cause = "would be a mesh of a folder that the scene reads: choose another folder with ";
             return Err(SimError::refused(path.display(), Message::from(cause) + Setting::Out));
         }
@@ -220,6 +221,9 @@ mod tests {
         {
             std::os::unix::fs::symlink(at("model.glb"), at("out/sound.wav")).unwrap();
             assert!(check("model.glb").unwrap_err().to_string().contains("sound.wav: is an input"), "a link");
+            fs::create_dir(at("targets")).unwrap();
+            std::os::unix::fs::symlink(at("targets/new.glb"), at("out/animation.glb")).unwrap();
+            assert!(check("targets").unwrap_err().to_string().contains("animation.glb: would be a mesh"));
         }
     }
 }

@@ -356,7 +356,7 @@ fn read_only_outputs_are_kept_and_links_stay() {
     let set_mode = |name: &str, mode: u32| {
         fs::set_permissions(at(name), fs::Permissions::from_mode(mode)).unwrap();
     };
-    for name in ["animation.glb", "checkpoint.bin", "sound_float.wav"] {
+    for name in ["animation.glb", "states.log", "checkpoint.bin", "sound_float.wav"] {
         set_mode(name, 0o444);
         let before = contents(folder.path());
         for restart in [false, true] {

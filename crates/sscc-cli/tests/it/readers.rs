@@ -223,10 +223,14 @@ fn all_regions_and_faces_of_solids_are_checked() {
     );
     // The second tetrahedron is outside the listed faces, and has one of them.
     let filling = format!("{head} 5\n{first}1 1 -4 0\nTetrahedra 2\n1 2 3 4 0\n1 3 2 5 0\n{faces}");
+    // The triangle is between the two tetrahedra.
+    let sheet =
+        format!("{head} 5\n{first}1 1 -4 0\nTetrahedra 2\n1 2 3 4 0\n1 3 2 5 0\nTriangles 1\n1 4 5 0\nEnd\n");
     let directory = folder(&[
         ("regions.mesh", regions.as_bytes()),
         ("free.mesh", free.as_bytes()),
         ("filling.mesh", filling.as_bytes()),
+        ("sheet.mesh", sheet.as_bytes()),
     ]);
     let added = "1 triangles of the file belong to no element: they are added after those of the elements";
     let left_out = "1 tetrahedra outside the surface of the file are left out";
@@ -240,6 +244,16 @@ fn all_regions_and_faces_of_solids_are_checked() {
         assert_eq!(pairs.is_empty(), code == 0, "{found:?}");
         // Triangles of the first tetrahedron with those after them.
         assert!(pairs.iter().all(|[a, b]| *a < 4 && *b >= 4), "{found:?}");
+    }
+    // A model of the solid has no others, which is a note.
+    let line =
+        "1 triangles of the file belong to no element of the solid: they have no elasticity and are left out";
+    for args in [
+        &["info", "sheet.mesh"][..],
+        &["modes", "sheet.mesh", "--kind", "linear", "--rank", "4", "-o", "a.model.safetensors"],
+    ] {
+        let found = sscc(directory.path(), args);
+        assert!(found.code == Some(0) && found.stderr.contains(&format!("note: {line}\n")), "{found:?}");
     }
 }
 

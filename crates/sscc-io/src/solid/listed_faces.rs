@@ -57,16 +57,16 @@ impl ListedFaces {
         self.unread.as_deref()
     }
 
-    /// Returns lines about the listed faces that are no faces of the elements of a solid. Its modes do not move them.
+    /// Returns lines about the listed faces that are no faces of the elements of a solid, whose modes do not move them.
     pub fn left_out(&self, solid: &VolumeMesh) -> Vec<String> {
         let triangles = |(fan, middles): &Face<'_>| if middles.is_some() { 4 } else { fan.len() };
         let free: usize = self.free_faces(solid).iter().map(triangles).sum();
         let of_free = (free > 0).then(|| {
             format!(
-                "{free} triangles of the file belong to no element: they have no elasticity and are left out"
+                "{free} triangles of the file belong to no element of the solid: they have no elasticity and are left out"
             )
         });
-        of_free.into_iter().chain(self.unread.clone()).collect()
+        of_free.into_iter().chain(self.unread.clone()).chain(self.other_middles(solid)).collect()
     }
 
     /// Returns a line about listed faces of second order that have the corners of a face of an element, but other middles.

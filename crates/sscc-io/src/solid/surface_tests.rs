@@ -209,7 +209,8 @@ fn solids_leave_out_listed_faces_of_no_element() {
     let mut free = filling();
     free.faces = vec![vec![0, 3, 4]];
     assert_eq!(free.surface().0.faces().len(), 7);
-    let line = "1 triangles of the file belong to no element: they have no elasticity and are left out";
+    let line =
+        "1 triangles of the file belong to no element of the solid: they have no elasticity and are left out";
     for (content, tets, outside, expected) in
         [(two_regions(), 1, 1, &[][..]), (free, 2, 0, &[line]), (filling(), 1, 1, &[])]
     {

@@ -2,15 +2,16 @@
 
 use std::sync::Arc;
 
+use glam::DVec3;
+
 use super::ignored_between::IgnoredBetween;
 use super::interval_tree::IntervalTree;
 use super::moving_mesh::MovingMesh;
 use super::node_boxes::boxes;
 use super::request::Detection;
-use super::scene_size::check_colliding;
+use super::scene_size::{COLLIDING, check_count};
 use super::worker::{QueryResult, Side, query, read_all};
 use crate::error::{At, Result};
-use glam::DVec3;
 
 /// A detector for each mesh, and its positions at one frame. The scene and all positions are evaluated once for all pairs.
 pub(super) struct NodePairs<'m, 'w> {
@@ -51,7 +52,7 @@ impl<'m, 'w> NodePairs<'m, 'w> {
                 if result.pairs.is_empty() {
                     continue;
                 }
-                check_colliding(found.len() + 1, 0, || mesh.place(frame), request)?;
+                check_count(found.len() + 1, COLLIDING, || mesh.place(frame), request)?;
                 if request.has_positions {
                     let mut shared = |node: usize, side: &Side<'_, '_>| {
                         Arc::clone(positions[node].get_or_insert_with(|| Arc::new(side.positions())))

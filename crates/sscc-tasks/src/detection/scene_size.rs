@@ -20,10 +20,15 @@ const MIN_TRIANGLES: u64 = 64;
 
 /// Maximum number of pairs of nodes that collide at one time: the answers of a frame take less than a GiB, unless they have many pairs
 /// of triangles each. A few frames for each thread wait until those before them are written.
-const MAX_COLLIDING: usize = 1 << 20;
+pub(super) const COLLIDING: Maximum = Maximum { most: 1 << 20, what: "nodes collide" };
 
-/// Maximum number of ignored pairs of triangles of all pairs of nodes (0.5 GiB). The pairs of two nodes have a limit of their own.
-const MAX_IGNORED: usize = 1 << 26;
+/// Maximum number of something in a scene.
+#[derive(Clone, Copy)]
+pub(super) struct Maximum {
+    pub most: usize,
+    /// What is counted, after `pairs of`.
+    pub what: &'static str,
+}
 
 /// Refuses nodes that have too many triangles or vertices together, or are too many.
 pub(super) fn check_scene_size(file: &Path, nodes: &[MeshNode], request: &Detection) -> Result<()> {
@@ -64,18 +69,16 @@ fn reason_against(nodes: impl Iterator<Item = [u64; 2]>) -> Option<String> {
     ))
 }
 
-/// Refuses a number of pairs of nodes that collide at one time, or of pairs of triangles that are ignored between nodes.
-pub(super) fn check_colliding(
-    nodes: usize,
-    ignored: usize,
+/// Refuses a number of pairs beyond a maximum.
+pub(super) fn check_count(
+    count: usize,
+    Maximum { most, what }: Maximum,
     place: impl FnOnce() -> String,
     request: &Detection,
 ) -> Result<()> {
-    let (most, what) = match (nodes > MAX_COLLIDING, ignored > MAX_IGNORED) {
-        (true, _) => (MAX_COLLIDING, "nodes collide"),
-        (_, true) => (MAX_IGNORED, "triangles of different nodes would be ignored"),
-        _ => return Ok(()),
-    };
+    if count <= most {
+        return Ok(());
+    }
     let cause = format!("more than {} pairs of {what}: ", grouped(most as u64));
     Err(TaskError::refused(place(), Message::from(cause) + way_out(request)))
 }
@@ -96,18 +99,14 @@ mod tests {
     use crate::detection::{AnimationMotion, Times, detect};
 
     #[test]
-    fn pairs_of_nodes_and_ignored_pairs_have_a_maximum() {
+    fn pairs_of_nodes_have_a_maximum() {
         let request = Detection::default();
-        let check = |nodes, ignored| check_colliding(nodes, ignored, || "a.glb".into(), &request);
-        assert!(check(MAX_COLLIDING, MAX_IGNORED).is_ok());
-        let message = |nodes, ignored| check(nodes, ignored).unwrap_err().to_string();
-        let end = "name a node, as in FILE#NODE";
+        let check = |count| check_count(count, COLLIDING, || "a.glb".into(), &request);
+        assert!(check(1 << 20).is_ok());
         assert_eq!(
-            message(MAX_COLLIDING + 1, 0),
-            format!("a.glb: more than 1,048,576 pairs of nodes collide: {end}")
+            check((1 << 20) + 1).unwrap_err().to_string(),
+            "a.glb: more than 1,048,576 pairs of nodes collide: name a node, as in FILE#NODE"
         );
-        let cause = "a.glb: more than 67,108,864 pairs of triangles of different nodes would be ignored";
-        assert_eq!(message(1, MAX_IGNORED + 1), format!("{cause}: {end}"));
     }
 
     /// 2^19 nodes of one triangle are allowed, and not one more.

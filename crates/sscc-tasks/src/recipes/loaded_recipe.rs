@@ -215,6 +215,21 @@ mod tests {
     }
 
     #[test]
+    fn faces_that_a_solid_leaves_out_are_a_note() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("sheet.mesh");
+        let text = "MeshVersionFormatted 1\nDimension 3\nVertices 5\n0 0 0 0\n4 0 0 0\n0 4 0 0\n0 0 4 0\n1 1 -4 0\n\
+                    Tetrahedra 2\n1 2 3 4 0\n1 3 2 5 0\nTriangles 1\n1 4 5 0\nEnd\n";
+        std::fs::write(&file, text).unwrap();
+        let recipe = Recipe::new("sheet", Shape::File(file), ModesSpec::Linear(6));
+        let notes = Notes::default();
+        LoadedRecipe::load(&recipe, None, &notes).unwrap();
+        let expected = "sheet.mesh: 1 triangles of the file belong to no element of the solid: they have no elasticity and \
+                        are left out";
+        assert_eq!(notes.0.into_inner().unwrap(), [expected]);
+    }
+
+    #[test]
     fn amplitudes_are_the_units_of_certificates() {
         let plain = Recipe::new("spring", Shape::SMALL_SPRING, ModesSpec::Linear(6));
         let (model, _) =

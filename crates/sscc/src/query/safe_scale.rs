@@ -23,8 +23,8 @@ impl Query {
     /// which radii are capped ([`Certificates::global_radius`]). Nodes and node pairs are bounded by their certified
     /// radii and local certificates, and triangle pairs beyond these by conservative advancement along the line. The
     /// scale is 0 if the shape collides at the centre (ignored pairs apart), if triangles are closer there than rounding errors, or,
-    /// unless q is the centre, if a coordinate there is beyond half of [`limits::LARGEST`](crate::limits::LARGEST). Where no
-    /// vertex moves, as where q is the centre, it is infinite with certificates of collisions, but may be finite without.
+    /// unless q is the centre, if a coordinate there is beyond half of [`limits::LARGEST`](crate::limits::LARGEST). Else, if q is
+    /// the centre, it is infinite with certificates of collisions, but may be finite without.
     ///
     /// Takes as long as 5 to 30 traditional queries (much longer without certificates), and allocates.
     ///

@@ -70,7 +70,7 @@ impl Metric {
     /// # Errors
     /// When there are no modes or more than 1024, the factor is not square or not upper triangular, an entry is beyond
     /// 2^200, a diagonal entry is not positive or below 2^-200, or the factor is nearly singular (condition beyond
-    /// about 1e13; about 1e26 for M).
+    /// about 2e15 / (r + 8), the square of this for M).
     pub fn from_factor(kind: MetricKind, rank: usize, factor: Vec<f64>) -> Result<Self, Error> {
         Ok(Self { kind, factor: Factor::Triangular(Triangular::new(rank, factor)?) })
     }

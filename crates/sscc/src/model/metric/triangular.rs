@@ -55,7 +55,7 @@ impl Triangular {
         }
         let mut this = Self { rank, entries, growth: Vec::new() };
         this.growth =
-            this.growth_bound().ok_or(wrong("it is nearly singular (condition beyond about 1e26)"))?;
+            this.growth_bound().ok_or(wrong("it is nearly singular: its inverse proves nothing"))?;
         Ok(this)
     }
 
