@@ -250,6 +250,7 @@ fn all_regions_and_faces_of_solids_are_checked() {
         "1 triangles of the file belong to no element of the solid: they have no elasticity and are left out";
     for args in [
         &["info", "sheet.mesh"][..],
+        &["info", "free.mesh"],
         &["modes", "sheet.mesh", "--kind", "linear", "--rank", "4", "-o", "a.model.safetensors"],
     ] {
         let found = sscc(directory.path(), args);

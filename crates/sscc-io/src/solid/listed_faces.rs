@@ -79,9 +79,8 @@ impl ListedFaces {
             of_second_order.map(|(face, middles)| (face, quarters(face, middles))).unzip();
         let (is_face, is_part) = (solid.has_faces(&faces), solid.has_faces(parts.as_flattened()));
         let of_parts = is_part.as_chunks::<4>().0;
-        let count =
-            is_face.iter().zip(of_parts).filter(|(is_face, parts)| **is_face && parts.contains(&false));
-        let count = count.count();
+        let is_other = |(is_face, parts): &(&bool, &[bool; 4])| **is_face && parts.contains(&false);
+        let count = is_face.iter().zip(of_parts).filter(is_other).count();
         (count > 0).then(|| {
             format!("{count} faces of 6 nodes have the corners of faces of elements, but other nodes between them: their own \
                      nodes are left out")

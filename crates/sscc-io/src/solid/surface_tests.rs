@@ -303,6 +303,16 @@ fn faces_whose_middles_are_not_those_of_their_element_have_a_line() {
     let expected = "1 faces of 6 nodes have the corners of faces of elements, but other nodes between them: their own nodes \
                     are left out";
     assert_eq!(found("2 9 0 1 2 3 5 6 7 "), (mesh, vec![expected.to_owned()]));
+    // Faces of a tetrahedron of ten nodes, whose middles are its own or others.
+    content.points.truncate(4);
+    content.points.extend([[2.0, 0.0, 0.0], [2.0, 2.0, 0.0], [0.0, 2.0, 0.0]]);
+    content.points.extend([[0.0, 0.0, 2.0], [0.0, 2.0, 2.0], [2.0, 0.0, 2.0]]);
+    for (middles, count) in [("5 6 7", 0), ("5 6 8", 1)] {
+        let gmsh = content.gmsh().replace("1 4 0 1 2 3 4 ", "1 11 0 1 2 3 4 5 6 7 8 9 10 ");
+        let gmsh = gmsh.replace("2 2 0 1 2 3 ", &format!("2 9 0 1 2 3 {middles} "));
+        let (mesh, lines) = gmsh::parse_any(gmsh.as_bytes()).unwrap().into_surface().unwrap();
+        assert_eq!((mesh.faces().len(), lines.len()), (16, count), "{lines:?}");
+    }
 }
 
 #[test]

@@ -164,7 +164,7 @@ impl SolidSource {
 
     /// Adds lines about the file of its surface, or about faces that belong to no element.
     #[must_use]
-    pub fn with_warnings(mut self, lines: Vec<String>) -> Self {
+    pub(crate) fn with_warnings(mut self, lines: Vec<String>) -> Self {
         let (Self::Around { warnings, .. } | Self::Within { warnings, .. } | Self::Whole { warnings, .. }) =
             &mut self;
         *warnings = lines;

@@ -21,7 +21,7 @@ use sscc_tasks::is_solid;
 
 use crate::args::Info;
 use crate::outcome::Outcome;
-use crate::output::{Output, warn};
+use crate::output::{Output, note, warn};
 use certificates::CertificatesInfo;
 use gltf::Gltf;
 use model::Model;
@@ -63,8 +63,8 @@ impl Report {
             }
             _ if is_solid(path) => match read_volume_or_surface(path)? {
                 VolumeOrSurface::Volume { mesh, faces } => {
-                    let left_out = faces.left_out(&mesh);
-                    return Ok(Self::Solid(Solid::of(&mesh, left_out)));
+                    faces.left_out(&mesh).into_iter().for_each(note);
+                    return Ok(Self::Solid(Solid::of(&mesh)));
                 }
                 VolumeOrSurface::Surface { mesh, warnings } => {
                     return Ok(Self::surface(path, &mesh, &warnings));

@@ -43,8 +43,7 @@ struct Material {
 }
 
 impl Solid {
-    /// `left_out` are lines about faces that belong to no element.
-    pub fn of(file: &VolumeMesh, left_out: Vec<String>) -> Self {
+    pub fn of(file: &VolumeMesh) -> Self {
         let mut elements = vec![0; file.materials().len()];
         file.element_material().iter().for_each(|material| elements[*material as usize] += 1);
         let material =
@@ -59,9 +58,8 @@ impl Solid {
         let surface = SolidSource::whole(file, &PartialMaterial::default());
         let (boundary, refusal) = match surface {
             Ok(source) => {
-                let boundary = Surface::of(source.mesh());
-                source.with_warnings(left_out).note().into_iter().for_each(note);
-                (Some(boundary), None)
+                source.note().into_iter().for_each(note);
+                (Some(Surface::of(source.mesh())), None)
             }
             Err(error) => (None, Some(flags::message(&error))),
         };

@@ -54,8 +54,9 @@ impl Triangular {
             }
         }
         let mut this = Self { rank, entries, growth: Vec::new() };
-        this.growth =
-            this.growth_bound().ok_or(wrong("it is nearly singular: its inverse proves nothing"))?;
+        this.growth = this
+            .growth_bound()
+            .ok_or(wrong("it is nearly singular: rounding errors of its inverse are too large"))?;
         Ok(this)
     }
 
